@@ -1,0 +1,225 @@
+"""Equilibria of the valve: states at which every rate vanishes, and how stable they are.
+
+A damped Newton method on the analytic Jacobian does the work. Where it fails, the equilibrium is bracketed: with
+the spool held at a position the pressures are the solution of a network of monotone resistances, and what
+remains is the root of one force over the stroke.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from divideropt.models.base import FloatArray
+from divideropt.models.divider.formulations import Stop
+from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
+
+TOLERANCE = 1e-11
+"""Residual at which Newton stops: flows over the source flow, forces over `FORCE_SCALE` times the end area."""
+
+ITERATIONS = 60
+"""Budget of Newton iterations; from a sensible start six suffice."""
+
+HALVINGS = 12
+"""How often a Newton step is halved before it is taken as lost."""
+
+FORCE_SCALE = 1e6
+"""Pressure [Pa] that scales a force residual."""
+
+BRACKETS = 64
+"""Intervals of the stroke searched for a sign change of the force where Newton fails."""
+
+_XDOT, _X = STATES.index("xdot"), STATES.index("x")
+_FREE = np.array([i for i in range(N_STATES) if i != _XDOT])
+_BALANCES = np.array([i for i in range(N_STATES) if i != _X])
+_PRESSURES = np.array([i for i in range(N_STATES) if i not in (_XDOT, _X)])
+
+Design = NDArray[np.record]
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A state of rest.
+
+    Attributes:
+        state: Shape (9,).
+        residual: Largest scaled residual.
+    """
+
+    state: FloatArray
+    residual: float
+
+
+def find_equilibrium(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Find the equilibrium near a state.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        start: Where to begin, shape (9,), such as the end of a response.
+
+    Returns:
+        The equilibrium within the stroke or on the stop, or None if there is none.
+    """
+    if rests_on_stop(design, start) and design[0].stop == Stop.FROZEN:
+        return _pressed_on_stop(design, start)
+    found = _newton(design, start, _FREE, _BALANCES)
+    if found is not None and abs(found.state[_X]) <= _reach(design):
+        return found
+    return _bracketed(design, start) or _pressed_on_stop(design, start)
+
+
+def rests_on_stop(design: Design, state: FloatArray) -> bool:
+    """Whether the spool is on its stop, or beyond it."""
+    return bool(abs(state[_X]) >= design[0].stop_position)
+
+
+def initial_guess(design: Design) -> FloatArray:
+    """Guess a state with the spool centred and the source flow halved, shape (9,)."""
+    d = design[0]
+    half = d.source_flow / 2
+    y = np.zeros(N_STATES)
+    y[7], y[8] = (half / d.load_1) ** 2, (half / d.load_2) ** 2
+    port = d.variable * 0.5 * np.pi * d.port_radius**2 * d.arc_holes
+    y[1], y[2] = y[7] + (half / port) ** 2, y[8] + (half / port) ** 2
+    y[0] = max(y[1] + (half / d.fixed_1) ** 2, y[2] + (half / d.fixed_2) ** 2)
+    y[3], y[4] = (y[0] + y[1]) / 2, (y[0] + y[2]) / 2
+    return y
+
+
+def stability_margin(design: Design, state: FloatArray) -> float:
+    """Return minus the largest real part of the Jacobian's eigenvalues [1/s], without Coulomb friction."""
+    free = without_friction(design)
+    matrix = jacobian(0.0, state, free)
+    if not np.isfinite(matrix).all():
+        return float("nan")
+    return float(-np.linalg.eigvals(matrix).real.max())
+
+
+def without_friction(design: Design, extra_force: float = 0.0) -> Design:
+    """Return the design with Coulomb friction taken off and a constant force [N] put on the spool."""
+    free = design.copy()
+    free[0].coulomb_friction = 0.0
+    free[0].extra_force = extra_force
+    return free
+
+
+def _newton(
+    design: Design, start: FloatArray, unknowns: NDArray[np.intp], balances: NDArray[np.intp]
+) -> Equilibrium | None:
+    """Solve the balances for the unknowns by damped Newton steps; the other states stay as in `start`."""
+    y = start.copy()
+    y[_XDOT] = 0.0
+    scale = _residual_scales(design, y)[balances]
+    reach = _reach(design)
+    residual = rates(0.0, y, design)[balances] / scale
+    size = float(np.abs(residual).max())
+    for _ in range(ITERATIONS):
+        if not np.isfinite(size):
+            return None
+        if size <= TOLERANCE:
+            return Equilibrium(y, size)
+        matrix = jacobian(0.0, y, design)[np.ix_(balances, unknowns)] / scale[:, None]
+        step = _solve(matrix, -residual)
+        if step is None:
+            return None
+        improved = False
+        for halving in range(HALVINGS):
+            trial = y.copy()
+            trial[unknowns] += step / 2**halving
+            trial[_PRESSURES] = np.maximum(trial[_PRESSURES], 0.0)
+            trial[_X] = min(max(trial[_X], -reach), reach)
+            trial_residual = rates(0.0, trial, design)[balances] / scale
+            trial_size = float(np.abs(trial_residual).max())
+            if trial_size < size:
+                y, residual, size, improved = trial, trial_residual, trial_size, True
+                break
+        if not improved:
+            return Equilibrium(y, size) if size <= 1e3 * TOLERANCE else None
+    return None
+
+
+def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Search the stroke for a sign change of the force, nearest to the start first."""
+    reach = _reach(design)
+    places = np.linspace(-reach, reach, BRACKETS + 1)
+    held = _held_states(design, start, places)
+    forces = np.array([np.nan if y is None else rates(0.0, y, design)[_XDOT] for y in held])
+    crossing = np.flatnonzero(np.sign(forces[:-1]) * np.sign(forces[1:]) <= 0)
+    for i in sorted(crossing, key=lambda k: abs(places[k] - start[_X])):
+        guess = held[i]
+        if guess is None:
+            continue
+        x = brentq(lambda x, y=guess: _force_at(design, y, x), places[i], places[i + 1], xtol=1e-12)
+        state = _hold(design, guess, float(x))
+        if state is None:
+            continue
+        found = _newton(design, state, _FREE, _BALANCES)
+        if found is not None and abs(found.state[_X]) <= reach:
+            return found
+    return None
+
+
+def _pressed_on_stop(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Rest on a rigid stop: the pressures balance and the force presses outwards."""
+    stop = float(design[0].stop_position)
+    if design[0].stop != Stop.FROZEN:
+        return None
+    for x in sorted((-stop, stop), key=lambda place: abs(place - start[_X])):
+        state = _hold(design, initial_guess(design), x)
+        if state is not None and rates(0.0, state, design)[_XDOT] * x >= 0:
+            return Equilibrium(state, 0.0)
+    return None
+
+
+def _held_states(design: Design, start: FloatArray, places: FloatArray) -> list[FloatArray | None]:
+    """Solve the pressures with the spool held at each place, each from its neighbour's."""
+    states: list[FloatArray | None] = []
+    guess = initial_guess(design)
+    for x in places:
+        state = _hold(design, guess, float(x))
+        if state is None:
+            state = _hold(design, initial_guess(design), float(x))
+        guess = guess if state is None else state
+        states.append(state)
+    return states
+
+
+def _hold(design: Design, guess: FloatArray, x: float) -> FloatArray | None:
+    """Solve for the pressures with the spool held at `x`."""
+    y = guess.copy()
+    y[_X] = x
+    found = _newton(design, y, _PRESSURES, _PRESSURES)
+    return None if found is None else found.state
+
+
+def _force_at(design: Design, guess: FloatArray, x: float) -> float:
+    state = _hold(design, guess, x)
+    return float("nan") if state is None else float(rates(0.0, state, design)[_XDOT])
+
+
+def _reach(design: Design) -> float:
+    """How far an equilibrium is sought: the stop, and what the stop's spring gives."""
+    d = design[0]
+    give = 1.01 if d.stop == 0 else 1.0
+    return float(d.stop_position * give)
+
+
+def _residual_scales(design: Design, y: FloatArray) -> FloatArray:
+    """What divides each rate: that of a pressure as if the source flow filled its volume."""
+    d = design[0]
+    flow = d.source_flow
+    end_1 = d.bulk_modulus / (d.end_volume + d.end_area * y[_X])
+    end_2 = d.bulk_modulus / (d.end_volume - d.end_area * y[_X])
+    gains = [d.source_gain, d.chamber_gain, d.chamber_gain, end_1, end_2]
+    force = FORCE_SCALE * d.end_area / d.mass
+    return np.array([*(flow * g for g in gains), force, 1.0, flow * d.load_gain, flow * d.load_gain])
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
+    """Solve a linear system, or None where it is singular."""
+    try:
+        step: FloatArray = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        return None
+    return step if np.isfinite(step).all() else None

@@ -1,0 +1,310 @@
+"""The equations of motion (2.8)–(2.19), (3.1)–(3.4), compiled: rates and their Jacobian in one pass.
+
+States, in order: Ps, Pa1, Pa2, Pb1, Pb2, ẋ, x, PL1, PL2 [Pa, m/s, m]. Everything a design fixes comes in one
+record of `COEFFICIENTS`; the pilot stage is in it as two 3×3 matrices. The record's options choose between the
+formulations; no equation stands twice.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from divideropt.models.base import FloatArray
+
+STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
+"""Names of the states, in the order of a state vector."""
+
+N_STATES = len(STATES)
+
+COEFFICIENTS = np.dtype(
+    (
+        np.record,
+        [
+            ("source_gain", "f8"),  # β/Vs
+            ("chamber_gain", "f8"),  # β/Va
+            ("load_gain", "f8"),  # β/VL
+            ("bulk_modulus", "f8"),
+            ("end_volume", "f8"),  # V1o = V2o
+            ("end_area", "f8"),  # A
+            ("mass", "f8"),
+            ("viscous_friction", "f8"),  # Bf
+            ("coulomb_friction", "f8"),  # Fc
+            ("fixed_1", "f8"),  # Cdo Ao1 √(2/ρ)
+            ("fixed_2", "f8"),
+            ("variable", "f8"),  # Cdv √(2/ρ), times an area
+            ("load_1", "f8"),  # CdL AL1 √(2/ρ)
+            ("load_2", "f8"),
+            ("transient", "f8"),  # Ld Cdv √(2ρ), times a width
+            ("port_radius", "f8"),  # rv
+            ("port_offset", "f8"),  # d0
+            ("stop_position", "f8"),  # x_max
+            ("rim_thickness", "f8"),
+            ("seal_leakage", "f8"),  # Cb3
+            ("source_flow", "f8"),  # Qs
+            ("extra_force", "f8"),  # on the spool, beside those of (2.17)
+            ("pilot_1", "f8", (3, 3)),
+            ("pilot_2", "f8", (3, 3)),
+            ("arc_holes", "f8"),
+            ("chord_holes", "f8"),
+            ("rim_holes", "f8"),
+            ("orifice_law", "i8"),
+            ("port_range", "i8"),
+            ("stop", "i8"),
+            ("pressure_floor", "i8"),
+        ],
+    )
+)
+"""What the kernel reads: one design under one set of inputs, SI."""
+
+ROOT_BLEND = 100.0
+"""Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
+
+STEEPEST = 1.0
+"""The signed root's infinite slope at 0 is replaced in the Jacobian, not in the rates, by that at this drop [Pa]."""
+
+FRICTION_VELOCITY = 1e-6
+"""ẋ_tan of (2.17) [m/s]: Coulomb friction is Fc tanh(ẋ/ẋ_tan)."""
+
+STOP_STIFFNESS = 1e8
+"""End stop [N/m]: the largest end force, some 2 kN, presses the spool 20 µm into it."""
+
+STOP_DAMPING = 5.0
+"""Damping of the contact [s/m], after Hunt and Crossley: force k d (1 + damping·ḋ), never pulling."""
+
+SMALLEST_VOLUME = 1e-15
+"""What C.3 puts for an end chamber that has vanished [m^3]."""
+
+
+@njit(cache=True, error_model="numpy")
+def rates(t, y, design):  # type: ignore[no-untyped-def]
+    """Return dy/dt.
+
+    Args:
+        t: Time [s]; the inputs are constant between events, so it does not matter.
+        y: State, shape (9,).
+        design: `COEFFICIENTS`, shape (1,); a call with a bare record costs numba four times as much.
+
+    Returns:
+        Rates, shape (9,).
+    """
+    out = np.empty(N_STATES)
+    jac = np.zeros((N_STATES, N_STATES))
+    motion(y, design[0], out, jac)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def jacobian(t, y, design):  # type: ignore[no-untyped-def]
+    """Return the matrix of derivatives of the rates by the states, shape (9, 9); arguments as in `rates`."""
+    out = np.empty(N_STATES)
+    jac = np.zeros((N_STATES, N_STATES))
+    motion(y, design[0], out, jac)
+    return jac
+
+
+@njit(cache=True, error_model="numpy")
+def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
+    """Fill rates and Jacobian.
+
+    Args:
+        y: State, shape (9,).
+        d: A record of `COEFFICIENTS`.
+        out: Receives the rates, shape (9,).
+        jac: Receives the Jacobian, shape (9, 9); must hold zeros.
+    """
+    Ps, Ps_ = _floored(y[0])
+    Pa1, Pa1_ = _floored(y[1])
+    Pa2, Pa2_ = _floored(y[2])
+    Pb1, Pb1_ = _floored(y[3])
+    Pb2, Pb2_ = _floored(y[4])
+    PL1, PL1_ = _floored(y[7])
+    PL2, PL2_ = _floored(y[8])
+    xdot, x, x_ = y[5], y[6], 1.0
+    if d.stop == 1 and abs(x) > d.stop_position:  # C.3 freezes the spool
+        x, x_ = math.copysign(d.stop_position, x), 0.0
+        xdot = 0.0
+
+    # Ports: area and chord of each, with their slopes by x.
+    reach_1 = x
+    inside = True
+    if d.port_range == 1:
+        low, high = d.port_offset - d.port_radius, d.port_offset + d.port_radius
+        inside = low <= x <= high
+        reach_1 = min(max(x, low), high)
+    moves = x_ if reach_1 == x else 0.0
+    Av1, Av1_e, w1, w1_e = _port(d.port_offset - reach_1, d)
+    Av2, Av2_e, w2, w2_e = _port(d.port_offset + reach_1, d)
+    Av1_x, w1_x, Av2_x, w2_x = -Av1_e * moves, -w1_e * moves, Av2_e * moves, w2_e * moves
+    if not inside:
+        w1, w2, w1_x, w2_x = 0.0, 0.0, 0.0, 0.0
+
+    # Flows through the orifices; each with its slope by the drop.
+    f, f_ = _root(Ps - Pa1, d.orifice_law)
+    Qs1, Qs1_ = d.fixed_1 * f, d.fixed_1 * f_
+    f, f_ = _root(Ps - Pa2, d.orifice_law)
+    Qs2, Qs2_ = d.fixed_2 * f, d.fixed_2 * f_
+    root_1, root_1_ = _root(Pa1 - PL1, d.orifice_law)
+    QL1, QL1_, QL1_x = d.variable * Av1 * root_1, d.variable * Av1 * root_1_, d.variable * Av1_x * root_1
+    root_2, root_2_ = _root(Pa2 - PL2, d.orifice_law)
+    QL2, QL2_, QL2_x = d.variable * Av2 * root_2, d.variable * Av2 * root_2_, d.variable * Av2_x * root_2
+    f, f_ = _root(PL1, d.orifice_law)
+    QLo1, QLo1_ = d.load_1 * f, d.load_1 * f_
+    f, f_ = _root(PL2, d.orifice_law)
+    QLo2, QLo2_ = d.load_2 * f, d.load_2 * f_
+
+    # Source and flow chambers, (2.8), (2.11), (2.12).
+    g = d.source_gain
+    p1, p2 = d.pilot_1, d.pilot_2
+    out[0] = g * (
+        d.source_flow - Qs1 - Qs2
+        + (p1[0, 0] * Ps + p1[0, 1] * Pa1 + p1[0, 2] * Pb1)
+        + (p2[0, 0] * Ps + p2[0, 1] * Pa2 + p2[0, 2] * Pb2)
+    )  # fmt: skip
+    jac[0, 0] = g * (-Qs1_ - Qs2_ + p1[0, 0] + p2[0, 0]) * Ps_
+    jac[0, 1] = g * (Qs1_ + p1[0, 1]) * Pa1_
+    jac[0, 2] = g * (Qs2_ + p2[0, 1]) * Pa2_
+    jac[0, 3] = g * p1[0, 2] * Pb1_
+    jac[0, 4] = g * p2[0, 2] * Pb2_
+
+    g = d.chamber_gain
+    out[1] = g * (Qs1 - QL1 + (p1[1, 0] * Ps + p1[1, 1] * Pa1 + p1[1, 2] * Pb1))
+    jac[1, 0] = g * (Qs1_ + p1[1, 0]) * Ps_
+    jac[1, 1] = g * (-Qs1_ - QL1_ + p1[1, 1]) * Pa1_
+    jac[1, 3] = g * p1[1, 2] * Pb1_
+    jac[1, 6] = -g * QL1_x
+    jac[1, 7] = g * QL1_ * PL1_
+    out[2] = g * (Qs2 - QL2 + (p2[1, 0] * Ps + p2[1, 1] * Pa2 + p2[1, 2] * Pb2))
+    jac[2, 0] = g * (Qs2_ + p2[1, 0]) * Ps_
+    jac[2, 2] = g * (-Qs2_ - QL2_ + p2[1, 1]) * Pa2_
+    jac[2, 4] = g * p2[1, 2] * Pb2_
+    jac[2, 6] = -g * QL2_x
+    jac[2, 8] = g * QL2_ * PL2_
+
+    # End chambers, (2.38)–(2.41); the end seals leak to tank.
+    swept = xdot * d.end_area
+    Vb1 = max(d.end_volume + d.end_area * x, SMALLEST_VOLUME)
+    g = d.bulk_modulus / Vb1
+    out[3] = g * (p1[2, 0] * Ps + p1[2, 1] * Pa1 + p1[2, 2] * Pb1 - swept - d.seal_leakage * Pb1)
+    jac[3, 0] = g * p1[2, 0] * Ps_
+    jac[3, 1] = g * p1[2, 1] * Pa1_
+    jac[3, 3] = g * (p1[2, 2] - d.seal_leakage) * Pb1_
+    jac[3, 5] = -g * d.end_area * x_
+    jac[3, 6] = -out[3] * d.end_area / Vb1 * x_
+    Vb2 = max(d.end_volume - d.end_area * x, SMALLEST_VOLUME)
+    g = d.bulk_modulus / Vb2
+    out[4] = g * (p2[2, 0] * Ps + p2[2, 1] * Pa2 + p2[2, 2] * Pb2 + swept - d.seal_leakage * Pb2)
+    jac[4, 0] = g * p2[2, 0] * Ps_
+    jac[4, 2] = g * p2[2, 1] * Pa2_
+    jac[4, 4] = g * (p2[2, 2] - d.seal_leakage) * Pb2_
+    jac[4, 5] = g * d.end_area * x_
+    jac[4, 6] = out[4] * d.end_area / Vb2 * x_
+
+    # Load lines, (3.1), (3.2).
+    g = d.load_gain
+    out[7] = g * (QL1 - QLo1)
+    jac[7, 1] = g * QL1_ * Pa1_
+    jac[7, 6] = g * QL1_x
+    jac[7, 7] = g * (-QL1_ - QLo1_) * PL1_
+    out[8] = g * (QL2 - QLo2)
+    jac[8, 2] = g * QL2_ * Pa2_
+    jac[8, 6] = g * QL2_x
+    jac[8, 8] = g * (-QL2_ - QLo2_) * PL2_
+
+    # The spool, (2.17), with C.3's transient flow force, both jets braking.
+    if d.pressure_floor == 0:  # forces see the pressures as they are
+        Pa1, Pa2, Pb1, Pb2, PL1, PL2 = y[1], y[2], y[3], y[4], y[7], y[8]
+        Pa1_, Pa2_, Pb1_, Pb2_, PL1_, PL2_ = 1.0, 1.0, 1.0, 1.0, 1.0, 1.0
+    rim = d.rim_thickness / 2.0
+    drag = d.transient * (w1 * root_1 + w2 * root_2)
+    friction = math.tanh(xdot / FRICTION_VELOCITY)
+    stop, stop_x, stop_v = _stop_force(x, xdot, d)
+    m = d.mass
+    out[5] = (
+        (Pb1 - Pb2) * d.end_area
+        + rim * w1 * (PL1 - Pa1)
+        - rim * w2 * (PL2 - Pa2)
+        - (d.viscous_friction + drag) * xdot
+        - d.coulomb_friction * friction
+        + d.extra_force
+        + stop
+    ) / m
+    jac[5, 1] = (-rim * w1 - d.transient * w1 * root_1_ * xdot) / m * Pa1_
+    jac[5, 2] = (rim * w2 - d.transient * w2 * root_2_ * xdot) / m * Pa2_
+    jac[5, 3] = d.end_area / m * Pb1_
+    jac[5, 4] = -d.end_area / m * Pb2_
+    friction_v = d.coulomb_friction * (1.0 - friction * friction) / FRICTION_VELOCITY
+    jac[5, 5] = (-d.viscous_friction - drag - friction_v + stop_v) / m * x_
+    brake_x = d.transient * (w1_x * root_1 + w2_x * root_2) * xdot
+    jac[5, 6] = (rim * w1_x * (PL1 - Pa1) - rim * w2_x * (PL2 - Pa2) - brake_x + stop_x) / m
+    jac[5, 7] = (rim * w1 + d.transient * w1 * root_1_ * xdot) / m * PL1_
+    jac[5, 8] = (-rim * w2 + d.transient * w2 * root_2_ * xdot) / m * PL2_
+    out[6] = xdot
+    jac[6, 5] = x_
+
+
+@njit(cache=True, error_model="numpy")
+def signed_root(drop, law):  # type: ignore[no-untyped-def]
+    """Return the signed square root of a pressure drop [Pa] as the orifices have it, elementwise."""
+    out = np.empty_like(drop)
+    for i in range(drop.size):
+        out.flat[i] = _root(drop.flat[i], law)[0]
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def _floored(p):  # type: ignore[no-untyped-def]
+    """Return max(p, 0) and its slope."""
+    return (0.0, 0.0) if p < 0.0 else (p, 1.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _root(drop, law):  # type: ignore[no-untyped-def]
+    """Return the signed square root of a drop and its slope, by an `OrificeLaw`."""
+    size = abs(drop)
+    if law == 0 and size < ROOT_BLEND:
+        a, b = 1.25 / math.sqrt(ROOT_BLEND), -0.25 / (ROOT_BLEND * ROOT_BLEND * math.sqrt(ROOT_BLEND))
+        return drop * (a + b * drop * drop), a + 3.0 * b * drop * drop
+    return math.copysign(math.sqrt(size), drop), 0.5 / math.sqrt(max(size, STEEPEST))
+
+
+@njit(cache=True, error_model="numpy")
+def _port(e, d):  # type: ignore[no-untyped-def]
+    """Return area, its slope by e, chord width, its slope by e: (2.15), (2.18), with `e` = d0 ∓ x."""
+    rv = d.port_radius
+    if d.port_range == 0 and abs(e) >= rv:
+        return (0.0 if e > 0.0 else d.arc_holes * math.pi * rv * rv), 0.0, 0.0, 0.0
+    half = math.sqrt(rv * rv - e * e)
+    area = d.arc_holes * rv * rv * math.acos(e / rv) - d.chord_holes * e * half
+    if half > 0.0:
+        slope = -d.arc_holes * rv * rv / half - d.chord_holes * (half - e * e / half)
+        return area, slope, d.rim_holes * 2.0 * half, -d.rim_holes * 2.0 * e / half
+    return area, 0.0, d.rim_holes * 2.0 * half, 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _stop_force(x, xdot, d):  # type: ignore[no-untyped-def]
+    """Return the end stop's force on the spool [N] and its slopes by x and ẋ."""
+    depth = abs(x) - d.stop_position
+    if d.stop != 0 or depth <= 0.0:
+        return 0.0, 0.0, 0.0
+    side = math.copysign(1.0, x)
+    grip = 1.0 + STOP_DAMPING * side * xdot
+    if grip <= 0.0:
+        return 0.0, 0.0, 0.0
+    return (
+        -side * STOP_STIFFNESS * depth * grip,
+        -STOP_STIFFNESS * grip,
+        -STOP_STIFFNESS * depth * STOP_DAMPING,
+    )
+
+
+def blank_coefficients() -> NDArray[np.record]:
+    """Return `COEFFICIENTS` of one design, all zero, shape (1,)."""
+    return np.zeros(1, dtype=COEFFICIENTS)
+
+
+def zero_state() -> FloatArray:
+    """Return the state of the cold start: all zero."""
+    return np.zeros(N_STATES)

@@ -1,0 +1,145 @@
+"""The response of one design to its scenario: from the initial state, over the step, to the end."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from divideropt.models.base import FloatArray
+from divideropt.models.divider.equilibrium import Equilibrium, find_equilibrium, initial_guess
+from divideropt.models.divider.formulations import Formulation, Stop
+from divideropt.models.divider.geometry import Geometry, derive_geometry
+from divideropt.models.divider.kernels import STATES, jacobian, rates, signed_root, zero_state
+from divideropt.models.divider.pilot import pilot_sides
+from divideropt.models.divider.scenario import Scenario, coefficients
+from divideropt.ode import Event, SolverSettings, SolverStatus, Trajectory, integrate
+
+
+@dataclass(frozen=True)
+class Phase:
+    """The response between two events.
+
+    Attributes:
+        design: `COEFFICIENTS` in force, shape (1,).
+        trajectory: The states; None where no time passes, or where the simulation did not get there.
+        rest: Equilibrium under these inputs: for a phase without a trajectory sought from a guess, else from the
+            trajectory's end; None if there is none or it was not sought.
+    """
+
+    design: NDArray[np.record]
+    trajectory: Trajectory | None
+    rest: Equilibrium | None
+
+    @property
+    def end(self) -> FloatArray | None:
+        """State at the end of the phase, shape (9,), or None if it was not reached."""
+        if self.trajectory is None:
+            return None if self.rest is None else self.rest.state
+        return self.trajectory.final if self.trajectory.status is SolverStatus.FINISHED else None
+
+    def load_flows(self, states: FloatArray) -> FloatArray:
+        """Return QL1 and QL2 [m^3/s] through the load orifices, (3.3), (3.4).
+
+        Args:
+            states: Shape (…, 9).
+
+        Returns:
+            Shape (…, 2).
+        """
+        d = self.design[0]
+        pressures = np.maximum(states[..., 7:9], 0.0)
+        return np.asarray(signed_root(pressures, d.orifice_law) * np.array([d.load_1, d.load_2]))
+
+
+@dataclass(frozen=True)
+class Response:
+    """One design's response.
+
+    Attributes:
+        scenario: What happened to it.
+        parameters: Every parameter by name, SI.
+        geometry: What they make.
+        phases: One between each two events, in the order of time.
+    """
+
+    scenario: Scenario
+    parameters: Mapping[str, float]
+    geometry: Geometry
+    phases: tuple[Phase, ...]
+
+
+def respond(
+    parameters: Mapping[str, float],
+    formulation: Formulation,
+    scenario: Scenario,
+    settings: SolverSettings,
+) -> Response:
+    """Simulate one design.
+
+    Args:
+        parameters: Every parameter by name, SI.
+        formulation: Which reading of the valve.
+        scenario: What happens to it.
+        settings: How to integrate.
+
+    Returns:
+        The response, as far as it came.
+    """
+    geometry = derive_geometry(parameters, holes=formulation.arc_holes)
+    state = None if scenario.settled else zero_state()
+    reached = True
+    phases = []
+    for inputs, begin, end in scenario.phases():
+        sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, formulation)
+        design = coefficients(parameters, geometry, sides, inputs, formulation)
+        if not reached:
+            phase = Phase(design, None, None)
+        elif state is None:
+            phase = Phase(design, None, find_equilibrium(design, initial_guess(design)))
+        else:
+            phase = _integrate(design, (begin, end), state, settings)
+        state, reached = phase.end, phase.end is not None
+        phases.append(phase)
+    return Response(scenario, parameters, geometry, tuple(phases))
+
+
+def _integrate(
+    design: NDArray[np.record], span: tuple[float, float], start: FloatArray, settings: SolverSettings
+) -> Phase:
+    if design[0].stop == Stop.FROZEN:
+        trajectory = _integrate_to_frozen_stop(design, span, start, settings)
+    else:
+        trajectory = _run(design, span, start, settings)
+    finished = trajectory.status is SolverStatus.FINISHED
+    return Phase(design, trajectory, find_equilibrium(design, trajectory.final) if finished else None)
+
+
+def _integrate_to_frozen_stop(
+    design: NDArray[np.record], span: tuple[float, float], start: FloatArray, settings: SolverSettings
+) -> Trajectory:
+    """Integrate over a stop that freezes the spool: a solver would halve its steps for ever before the jump."""
+    position, stop = STATES.index("x"), float(design[0].stop_position)
+    if abs(start[position]) > stop:
+        return _run(design, span, start, settings)
+    free = design.copy()
+    free[0].stop = Stop.NONE
+    moving = _run(free, span, start, settings, lambda y: abs(y[position]) - stop)
+    if moving.status is not SolverStatus.EVENT or moving.edges[-1] >= span[1]:
+        return moving
+    jammed = moving.final.copy()
+    jammed[position] = math.copysign(math.nextafter(stop, math.inf), jammed[position])
+    return moving.then(_run(design, (float(moving.edges[-1]), span[1]), jammed, settings))
+
+
+def _run(
+    design: NDArray[np.record],
+    span: tuple[float, float],
+    start: FloatArray,
+    settings: SolverSettings,
+    event: Event | None = None,
+) -> Trajectory:
+    return integrate(
+        lambda t, y: rates(t, y, design), lambda t, y: jacobian(t, y, design), span, start, settings, event
+    )

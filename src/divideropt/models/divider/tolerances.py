@@ -1,0 +1,48 @@
+"""How exactly the divider is integrated where nobody says otherwise, and how large its states are."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from divideropt.models.divider.kernels import STATES
+from divideropt.ode import SolverSettings
+
+DEFAULT_METHOD = "LSODA"
+DEFAULT_RTOL = 1e-4
+DEFAULT_MAX_STEPS = 5_000
+"""Twenty times what a design needs at the default tolerance: a chattering one is given up there."""
+
+STATE_UNITS: Mapping[str, str] = MappingProxyType(
+    {name: {"xdot": "m/s", "x": "m"}.get(name, "Pa") for name in STATES}
+)
+"""The unit of each state, in the order of a state vector."""
+
+_SCALES = {"Pa": 1e6, "m/s": 1e-2, "m": 1e-4}
+"""A tenth of the load pressures; the spool's speed and way in the standard test, as powers of ten."""
+
+DEFAULT_SCALES: Mapping[str, float] = MappingProxyType({name: _SCALES[unit] for name, unit in STATE_UNITS.items()})
+"""The scale of each state, in its unit: where a campaign gives no atol, atol = rtol × scale."""
+
+
+def default_atol(rtol: float) -> tuple[float, ...]:
+    """Return rtol × scale, one absolute tolerance a state, in the order of a state vector."""
+    return tuple(rtol * scale for scale in DEFAULT_SCALES.values())
+
+
+def solver_settings(
+    method: str = DEFAULT_METHOD,
+    rtol: float = DEFAULT_RTOL,
+    atol: tuple[float, ...] | None = None,
+    max_steps: int = DEFAULT_MAX_STEPS,
+) -> SolverSettings:
+    """Fill in what is not said.
+
+    Args:
+        method: Name of the solver.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance a state [Pa, m/s, m]; rtol × scale where not given.
+        max_steps: Budget of steps between two events.
+
+    Returns:
+        The settings, complete.
+    """
+    return SolverSettings(method, rtol, atol or default_atol(rtol), max_steps)

@@ -1,0 +1,88 @@
+"""SciPy's stiff solvers behind the call of `divideropt.ode.base`."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from scipy.integrate import BDF, LSODA, Radau
+from scipy.optimize import brentq
+
+from divideropt.ode.base import (
+    NODES,
+    FloatArray,
+    Rates,
+    SolverSettings,
+    SolverStatus,
+    Trajectory,
+    lagrange_weights,
+)
+
+Event = Callable[[FloatArray], float]
+
+METHODS: Mapping[str, Any] = MappingProxyType({"LSODA": LSODA, "BDF": BDF, "Radau": Radau})
+"""The methods of `scipy.integrate.solve_ivp` for stiff systems, by its names."""
+
+
+def integrate(
+    rates: Rates,
+    jacobian: Rates,
+    span: tuple[float, float],
+    start: FloatArray,
+    settings: SolverSettings,
+    event: Event | None = None,
+) -> Trajectory:
+    """Integrate from one event to the next.
+
+    Args:
+        rates: dy/dt as a function of (t, y), shape (n,).
+        jacobian: Its derivatives by y, shape (n, n).
+        span: First and last time.
+        start: State at the first time, shape (n,).
+        settings: Method, tolerances, budget.
+        event: A function of the state; the trajectory ends where it first becomes positive.
+
+    Returns:
+        The trajectory, up to the event or to where the solver gave up; it holds at least one step.
+    """
+    solver = METHODS[settings.method](
+        rates,
+        span[0],
+        start,
+        span[1],
+        rtol=settings.rtol,
+        atol=np.array(settings.atol),
+        jac=jacobian,
+    )
+    edges, values = [span[0]], []
+    status, message = SolverStatus.STEP_BUDGET, f"{settings.max_steps} steps did not suffice"
+    for _ in range(settings.max_steps):
+        failure = solver.step()
+        if solver.status == "failed":
+            status, message = SolverStatus.FAILED, failure or ""
+            break
+        left, width = edges[-1], solver.t - edges[-1]
+        dense = solver.dense_output()
+        values.append(dense(left + width * NODES))
+        edges.append(solver.t)
+        if event is not None and event(solver.y) > 0.0:
+            width *= _crossing(event, values[-1])
+            values[-1], edges[-1] = dense(left + width * NODES), left + width
+            status, message = SolverStatus.EVENT, ""
+            break
+        if solver.status == "finished":
+            status, message = SolverStatus.FINISHED, ""
+            break
+    if not values:
+        edges.append(span[1])
+        values.append(np.repeat(start[:, None], len(NODES), axis=1))
+    return Trajectory(np.array(edges), np.array(values), status, message)
+
+
+def _crossing(event: Event, values: FloatArray) -> float:
+    """Place on a step, in (0, 1], where an event that is positive at its end has become so."""
+
+    def at(theta: float) -> float:
+        return event(values @ lagrange_weights(np.array([theta]))[0])
+
+    return 1.0 if at(0.0) >= 0.0 else float(brentq(at, 0.0, 1.0))

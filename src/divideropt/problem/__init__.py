@@ -1,0 +1,19 @@
+"""What is asked of a model: design space, objectives, constraints, aggregates."""
+
+from divideropt.problem.aggregate import AGGREGATES, Aggregate
+from divideropt.problem.criteria import Constraint, Objective
+from divideropt.problem.problem import Evaluations, Problem, Told, merit
+from divideropt.problem.space import DesignSpace, Variable
+
+__all__ = [
+    "AGGREGATES",
+    "Aggregate",
+    "Constraint",
+    "DesignSpace",
+    "Evaluations",
+    "Objective",
+    "Problem",
+    "Told",
+    "Variable",
+    "merit",
+]

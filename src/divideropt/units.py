@@ -1,0 +1,94 @@
+"""Units at the border: a string such as `6 mm` to a number in the unit the platform computes in.
+
+Inside, everything is SI, but for percentages, which stay numbers in percent. The unit expression passes a
+strict grammar before `pint` sees it, since pint evaluates what it is given (`6^800000` would not end).
+"""
+
+import re
+from decimal import Decimal
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_FACTOR = r"(?:[A-Za-zµμ°%]{1,24}(?:\^-?[1-9])?)"
+_UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
+_MEASURE = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
+_LONGEST = 80
+
+
+def parse_measure(value: object, unit: str) -> float:
+    """Read a number with its unit.
+
+    Args:
+        value: A string such as `6 mm`, `1e-3 m^3/s`, `0.5 %`; a bare number only where `unit` is "".
+        unit: The unit to convert to, as the platform names it: "m", "Pa", "m^3", "1/s", "%", or "" for a
+            number without dimension.
+
+    Returns:
+        The number in `unit`.
+
+    Raises:
+        ValueError: In one sentence, what is wrong with the value and what would be right.
+    """
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(f"{value!r} is not {_wanted(unit)}")
+    if not isinstance(value, str):
+        return _bare(float(value), unit)
+    match = _MEASURE.fullmatch(value) if len(value) <= _LONGEST else None
+    if match is None:
+        raise ValueError(f"{value[:_LONGEST]!r} is not {_wanted(unit)}")
+    number, given = match[1], match[2]
+    if given is None:
+        return _bare(float(number), unit)
+    if given == unit:
+        return _finite(float(number))
+    return _finite(float(Decimal(number) * _factor(given, unit)))
+
+
+def format_measure(value: float, unit: str) -> str:
+    """Write a number so that `parse_measure` reads the same bits again: `0.006 m`."""
+    return f"{value!r} {unit}".rstrip()
+
+
+def _bare(number: float, unit: str) -> float:
+    if unit:
+        raise ValueError(f"{number:g} has no unit; write {number:g} {unit}, or the same in any unit of that kind")
+    return _finite(number)
+
+
+def _finite(number: float) -> float:
+    if number - number != 0.0:
+        raise ValueError(f"{number} is not a finite number")
+    return number
+
+
+def _wanted(unit: str) -> str:
+    return f"a number with a unit, such as 1 {unit}" if unit else "a number"
+
+
+@cache
+def _factor(given: str, wanted: str) -> Decimal:
+    """Return what to multiply a number in `given` by to have it in `wanted`; decimal, so that 3 um is 3e-6."""
+    import pint  # noqa: PLC0415 (late: a call that converts nothing does not pay for it)
+
+    registry = _registry()
+    try:
+        return Decimal(registry.Quantity(Decimal(1), _pint_name(given)).to(_pint_name(wanted)).magnitude)
+    except pint.UndefinedUnitError:
+        raise ValueError(f"the unit {given!r} is not known; here {_wanted(wanted)}") from None
+    except pint.DimensionalityError:
+        raise ValueError(f"the unit {given!r} is of another kind; here {_wanted(wanted)}") from None
+
+
+@cache
+def _registry() -> "UnitRegistry[Decimal]":
+    import pint  # noqa: PLC0415
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def _pint_name(unit: str) -> str:
+    return re.sub(r"^1/", "1 / ", unit.replace("%", "percent")) or "dimensionless"
