@@ -1,0 +1,160 @@
+"""A campaign's folder: the campaign as resolved, the runs' logs, the fronts, the report."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from filelock import FileLock, Timeout
+
+from divideropt.errors import StoreError, StoreInUseError, UsageError
+from divideropt.store.files import disk_errors, publish
+from divideropt.store.log import RunLog
+from divideropt.store.schema import TableSchema, check_version
+
+LOCK_PATIENCE = 10.0
+"""How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
+
+
+class Store:
+    """The files of one campaign, see the layout in the design."""
+
+    def __init__(self, folder: Path) -> None:
+        """Name the folder; nothing is read or made yet."""
+        self.folder = folder
+
+    @property
+    def campaign_path(self) -> Path:
+        """The campaign as resolved."""
+        return self.folder / "campaign.yaml"
+
+    @property
+    def report_path(self) -> Path:
+        """The report."""
+        return self.folder / "report.html"
+
+    @property
+    def status_folder(self) -> Path:
+        """What running processes say of themselves; of no interest once they are done."""
+        return self.folder / ".running"
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a store in the folder."""
+        return self.campaign_path.is_file()
+
+    def read_campaign(self) -> str:
+        """Return the campaign as resolved, YAML.
+
+        Raises:
+            UsageError: There is no store in the folder.
+        """
+        if not self.exists:
+            raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
+        return self.campaign_path.read_text(encoding="utf-8")
+
+    def write_campaign(self, text: str) -> None:
+        """Replace the campaign as resolved.
+
+        Raises:
+            DiskError: The disk refused.
+        """
+        with disk_errors(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+        publish(self.campaign_path, lambda p: _write_text(p, text))
+
+    def write_report(self, text: str) -> Path:
+        """Replace the report and return its path."""
+        publish(self.report_path, lambda p: _write_text(p, text))
+        return self.report_path
+
+    def log(self, run: str, schema: TableSchema) -> RunLog:
+        """Open a run's log."""
+        return RunLog(self.folder / "evaluations" / run, run, schema)
+
+    def write_front(self, name: str, table: pa.Table) -> None:
+        """Replace a front; `name` is a run's, or `combined`."""
+        path = self._front_path(name)
+        with disk_errors(path.parent):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        publish(path, lambda p: pq.write_table(table, p, write_page_checksum=True))
+
+    def read_front(self, name: str) -> pa.Table | None:
+        """Read a front, or None if it has not been written.
+
+        Raises:
+            StoreError: It is damaged or of a later version.
+        """
+        path = self._front_path(name)
+        if not path.is_file():
+            return None
+        try:
+            table = pq.ParquetFile(path, page_checksum_verification=True).read()
+        except (pa.ArrowException, OSError) as error:
+            raise StoreError(f"{path}: damaged ({error}); delete it and run the campaign again") from error
+        check_version(table.schema, path)
+        return table
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Hold the store for writing.
+
+        Raises:
+            StoreInUseError: Another process holds it.
+        """
+        with disk_errors(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            lock = FileLock(self.folder / ".lock", timeout=0)
+        try:
+            with disk_errors(self.folder):
+                lock.acquire()
+        except Timeout:
+            raise StoreInUseError(
+                f"{self.folder}: another divideropt is writing to this store; wait for it"
+            ) from None
+        try:
+            yield
+        finally:
+            lock.release()
+
+    @contextmanager
+    def writing_run(self, run: str) -> Iterator[None]:
+        """Hold one run's log for writing, waiting a little for a worker that is about to die.
+
+        Raises:
+            StoreInUseError: Another process keeps holding it.
+        """
+        with disk_errors(self.folder):
+            self.status_folder.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(self.status_folder / f"{run}.lock", timeout=LOCK_PATIENCE)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise StoreInUseError(f"{self.folder}: another process is writing run {run}; wait for it") from None
+        try:
+            yield
+        finally:
+            lock.release()
+
+    def move_aside(self) -> Path | None:
+        """Rename an existing store out of the way, and say where it went."""
+        if not self.folder.exists():
+            return None
+        stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
+        aside = self.folder.with_name(f"{self.folder.name}.before-{stamp}")
+        count = 1
+        while aside.exists():
+            count += 1
+            aside = self.folder.with_name(f"{self.folder.name}.before-{stamp}-{count}")
+        with disk_errors(self.folder):
+            self.folder.rename(aside)
+        return aside
+
+    def _front_path(self, name: str) -> Path:
+        return self.folder / "fronts" / f"{name}.parquet"
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

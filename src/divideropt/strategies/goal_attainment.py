@@ -1,0 +1,148 @@
+"""A sweep of goal-attainment problems over reference directions.
+
+Each direction w asks for the least γ with F_i - w_i γ ≤ F*_i, objectives scaled between the ideal and the nadir
+point of what has been found so far (Gembicki 1974); the complex method solves it, warm-started from its neighbour.
+A small multiple of the sum is added, so that weakly optimal points lose (Wierzbicki's augmentation).
+"""
+
+from collections.abc import Iterator
+from itertools import count
+from math import comb
+from typing import Annotated
+
+import moocore
+import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from divideropt.models.base import FloatArray
+from divideropt.problem import Problem, Told, merit
+from divideropt.strategies.base import STRICT, BudgetSpentError, Count, Evaluate, within_budget
+from divideropt.strategies.complex_method import Complex, search
+
+AUGMENTATION = 1e-3
+"""ρ: what the sum of the scaled objectives counts beside their maximum."""
+
+SMALLEST_WEIGHT = 1e-3
+"""Floor of a direction's components: a zero would ignore its objective altogether."""
+
+FIRST_SAMPLE = 10
+"""Random designs a variable, from which the sweep sets out."""
+
+VISIT = 36
+"""Evaluations a direction gets at each visit; the sweep comes round again while the budget lasts, and no visit
+depends on how often that will be."""
+
+NEIGHBOURHOOD = 0.1
+"""Half width, in parts of the box, from which the fresh points of a warm-started complex are drawn."""
+
+
+@dataclass(frozen=True, config=STRICT)
+class GoalAttainment:
+    """Options of the sweep."""
+
+    directions: Annotated[int, Field(ge=3, le=10_000)] = 91
+    """Reference directions, spread evenly (Das and Dennis); the largest such set of at most this many."""
+    evaluations: Count = 9000
+    """Budget of evaluations."""
+
+    @property
+    def budget(self) -> int:
+        """Most evaluations a run asks for."""
+        return self.evaluations
+
+    def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
+        """Visit the directions one after the other, round after round; see `Strategy.run`."""
+        random = np.random.default_rng(seed)
+        archive = _Archive(problem, within_budget(evaluate, self.evaluations))
+        directions = reference_directions(len(problem.objectives), self.directions)
+        try:
+            archive.score(problem.space.sample(FIRST_SAMPLE * len(problem.space), random))
+            for _ in count():
+                for direction in directions:
+                    _visit(direction, archive, problem, random)
+        except BudgetSpentError:
+            return
+
+
+def reference_directions(objectives: int, most: int) -> FloatArray:
+    """Spread directions evenly over the unit simplex, each next to the one before.
+
+    Args:
+        objectives: Number of objectives.
+        most: Most directions.
+
+    Returns:
+        The largest Das–Dennis set of at most `most`, along a boustrophedon path, shape (n, objectives).
+    """
+    parts = 1
+    while objectives > 1 and comb(parts + objectives, objectives - 1) <= most:
+        parts += 1
+    lattice = np.array(list(_lattice(objectives, parts)), dtype=float) / parts
+    return np.asarray(np.maximum(lattice, SMALLEST_WEIGHT))
+
+
+def _lattice(dimension: int, total: int) -> Iterator[tuple[int, ...]]:
+    if dimension == 1:
+        yield (total,)
+        return
+    for first in range(total + 1):
+        rest = list(_lattice(dimension - 1, total - first))
+        yield from ((first, *others) for others in (rest if first % 2 == 0 else reversed(rest)))
+
+
+class _Archive:
+    """Everything a run was told, which also sets the scale of the objectives."""
+
+    def __init__(self, problem: Problem, evaluate: Evaluate) -> None:
+        self._evaluate = evaluate
+        self.X = np.empty((0, len(problem.space)))
+        self.told = Told(np.empty((0, len(problem.objectives))), np.empty((0, problem.constraint_count)))
+
+    def score(self, designs: FloatArray) -> Told:
+        told = self._evaluate(designs)
+        self.X = np.concatenate([self.X, designs])
+        self.told = Told(np.concatenate([self.told.F, told.F]), np.concatenate([self.told.G, told.G]))
+        return told
+
+    def ideal_and_span(self) -> tuple[FloatArray, FloatArray]:
+        """Ideal point of the front found so far, and its extent, 1 where it has none."""
+        F = self.told.F[self.told.feasible]
+        if len(F) == 0:
+            F = self.told.F
+        front = F[moocore.is_nondominated(F)]
+        span = np.ptp(front, axis=0)
+        return front.min(axis=0), np.where(span > 0, span, 1.0)
+
+
+def _visit(direction: FloatArray, archive: _Archive, problem: Problem, random: np.random.Generator) -> None:
+    """Improve the answer to one direction's problem by a complex that is given `VISIT` evaluations."""
+    ideal, span = archive.ideal_and_span()
+    spent = 0
+
+    def attainment(told: Told) -> FloatArray:
+        scaled = (told.F - ideal) / span / direction
+        return merit(scaled.max(axis=1) + AUGMENTATION * scaled.sum(axis=1), told)
+
+    def score(designs: FloatArray) -> FloatArray:
+        nonlocal spent
+        if spent + len(designs) > VISIT:
+            raise _VisitOverError
+        spent += len(designs)
+        return attainment(archive.score(designs))
+
+    known = attainment(archive.told)
+    space, size = problem.space, 2 * len(problem.space)
+    nearest = np.argsort(known, kind="stable")[: size // 2]
+    best = archive.X[nearest[0]]
+    width = NEIGHBOURHOOD * (space.upper - space.lower)
+    fresh = space.clip(best + width * (2 * random.random((size - len(nearest), len(space))) - 1))
+    try:
+        held = Complex(np.concatenate([archive.X[nearest], fresh]), np.concatenate([known[nearest], score(fresh)]))
+        search(held, score, space, random)
+    except _VisitOverError:
+        return
+
+
+class _VisitOverError(Exception):
+    """A visit's evaluations are spent."""
