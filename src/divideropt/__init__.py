@@ -1,1 +1,1 @@
-"""."""
+"""Multiobjective optimisation of simulated hydraulic components."""

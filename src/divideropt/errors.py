@@ -5,13 +5,12 @@ remedy. A simulation that fails is not an error but a value: see `divideropt.mod
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 
 class DivideroptError(Exception):
     """Base of every error a user may see as one sentence instead of a traceback."""
 
-    exit_code: ClassVar[int] = 1
+    exit_code: int = 1
 
 
 class UsageError(DivideroptError):

@@ -35,8 +35,10 @@ def parse_measure(value: object, unit: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise ValueError(f"{value!r} is not {_wanted(unit)}")
-    if not isinstance(value, str):
-        return _bare(float(value), unit)
+    if isinstance(value, int):
+        value = str(value)  # which may be too large for a float
+    if isinstance(value, float):
+        return _bare(value, unit)
     match = _MEASURE.fullmatch(value) if len(value) <= _LONGEST else None
     if match is None:
         raise ValueError(f"{value[:_LONGEST]!r} is not {_wanted(unit)}")
@@ -79,7 +81,7 @@ def _factor(given: str, wanted: str) -> Decimal:
         return Decimal(registry.Quantity(Decimal(1), _pint_name(given)).to(_pint_name(wanted)).magnitude)
     except pint.UndefinedUnitError:
         raise ValueError(f"the unit {given!r} is not known; here {_wanted(wanted)}") from None
-    except pint.DimensionalityError:
+    except (pint.PintError, AssertionError, ArithmeticError):  # a logarithmic or offset unit may be any of these
         raise ValueError(f"the unit {given!r} is of another kind; here {_wanted(wanted)}") from None
 
 

@@ -104,20 +104,8 @@ class Store:
         Raises:
             StoreInUseError: Another process holds it.
         """
-        with disk_errors(self.folder):
-            self.folder.mkdir(parents=True, exist_ok=True)
-            lock = FileLock(self.folder / ".lock", timeout=0)
-        try:
-            with disk_errors(self.folder):
-                lock.acquire()
-        except Timeout:
-            raise StoreInUseError(
-                f"{self.folder}: another divideropt is writing to this store; wait for it"
-            ) from None
-        try:
+        with _held(self.folder, ".lock", 0.0, "another divideropt is writing to this store"):
             yield
-        finally:
-            lock.release()
 
     @contextmanager
     def writing_run(self, run: str) -> Iterator[None]:
@@ -126,17 +114,8 @@ class Store:
         Raises:
             StoreInUseError: Another process keeps holding it.
         """
-        with disk_errors(self.folder):
-            self.status_folder.mkdir(parents=True, exist_ok=True)
-        lock = FileLock(self.status_folder / f"{run}.lock", timeout=LOCK_PATIENCE)
-        try:
-            lock.acquire()
-        except Timeout:
-            raise StoreInUseError(f"{self.folder}: another process is writing run {run}; wait for it") from None
-        try:
+        with _held(self.status_folder, f"{run}.lock", LOCK_PATIENCE, f"another process is writing run {run}"):
             yield
-        finally:
-            lock.release()
 
     def move_aside(self) -> Path | None:
         """Rename an existing store out of the way, and say where it went."""
@@ -158,3 +137,19 @@ class Store:
 
 def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def _held(folder: Path, name: str, patience: float, reason: str) -> Iterator[None]:
+    """Hold a lock of the kernel's, which ends with the process that has it."""
+    with disk_errors(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(folder / name, timeout=patience)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise StoreInUseError(f"{folder}: {reason}; wait until it is done, or name another --store") from None
+    try:
+        yield
+    finally:
+        lock.release()

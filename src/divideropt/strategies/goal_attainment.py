@@ -29,12 +29,13 @@ SMALLEST_WEIGHT = 1e-3
 FIRST_SAMPLE = 10
 """Random designs a variable, from which the sweep sets out."""
 
-VISIT = 36
+VISIT = 24
 """Evaluations a direction gets at each visit; the sweep comes round again while the budget lasts, and no visit
 depends on how often that will be."""
 
-NEIGHBOURHOOD = 0.1
-"""Half width, in parts of the box, from which the fresh points of a warm-started complex are drawn."""
+NEIGHBOURHOOD = (0.02, 0.3)
+"""Between these parts of the box, at each visit drawn anew, lies the half width from which the points of a
+warm-started complex are taken: large ones find, small ones polish."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -132,14 +133,13 @@ def _visit(direction: FloatArray, archive: _Archive, problem: Problem, random: n
         return attainment(archive.score(designs))
 
     known = attainment(archive.told)
-    space, size = problem.space, 2 * len(problem.space)
-    nearest = np.argsort(known, kind="stable")[: size // 2]
-    best = archive.X[nearest[0]]
-    width = NEIGHBOURHOOD * (space.upper - space.lower)
-    fresh = space.clip(best + width * (2 * random.random((size - len(nearest), len(space))) - 1))
+    space, nearest = problem.space, int(np.argmin(known))
+    reach = np.exp(random.uniform(*np.log(NEIGHBOURHOOD))) * (space.upper - space.lower)
+    scatter = 2 * random.random((2 * len(space) - 1, len(space))) - 1
+    fresh = space.clip(archive.X[nearest] + reach * scatter)
     try:
-        held = Complex(np.concatenate([archive.X[nearest], fresh]), np.concatenate([known[nearest], score(fresh)]))
-        search(held, score, space, random)
+        points = np.concatenate([archive.X[[nearest]], fresh])
+        search(Complex(points, np.concatenate([known[[nearest]], score(fresh)])), score, space, random)
     except _VisitOverError:
         return
 

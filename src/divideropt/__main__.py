@@ -1,0 +1,5 @@
+"""`python -m divideropt`."""
+
+from divideropt.cli import main
+
+main()

@@ -1,0 +1,1 @@
+"""Campaigns: the file, the plan, the run."""

@@ -1,0 +1,182 @@
+"""A campaign: what is optimised, in what, by which strategies. Frozen, in SI, every default filled in."""
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
+from pydantic_core import InitErrorDetails
+
+from divideropt.campaign import schemas
+from divideropt.campaign.divider import DividerConfig
+from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
+from divideropt.campaign.plugin import PluginConfig
+from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.models import Parameter, Quantity
+
+MOST_WORKERS = 256
+"""Beyond it a number of workers is a slip of the finger."""
+
+_BACKENDS = {"loky": "worker processes", "sequential": "one run after the other, in this process"}
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)
+
+
+def _nonzero(goal: float) -> float:
+    if goal == 0.0:
+        raise ValueError(
+            "a goal of 0 is not permitted, since (3.24) divides by it; give the least that would satisfy"
+        )
+    return goal
+
+
+class ObjectiveConfig(Section):
+    """A quantity to be minimised, a signed one by its magnitude. Read by `Campaign`, which has the unit."""
+
+    goal: Annotated[float, GivenMeasure(), AfterValidator(_nonzero)] | None = None
+    """F* of (3.24), in the quantity's unit."""
+    weight: Annotated[float, Measure("", POSITIVE)] = 1.0
+    """w of (3.24)."""
+
+
+class ConstraintConfig(Section):
+    """Inclusive bounds of a quantity, of a signed one's magnitude. Read by `Campaign`, which has the unit."""
+
+    min: Annotated[float, GivenMeasure()] | None = None
+    """Lower bound, in the quantity's unit."""
+    max: Annotated[float, GivenMeasure()] | None = None
+    """Upper bound, in the quantity's unit."""
+
+    @model_validator(mode="after")
+    def _bounds(self) -> Self:
+        if self.min is None and self.max is None:
+            raise ValueError("the constraint has no bound; give `min`, `max` or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"min is above max ({self.min:g} > {self.max:g}), so nothing is feasible; exchange them")
+        return self
+
+
+class ParallelConfig(Section):
+    """How the work is spread."""
+
+    workers: Annotated[int, Field(strict=True, ge=1, le=MOST_WORKERS)] = 2
+    """Processes at a time."""
+    backend: Annotated[str, OneOf("backend", _BACKENDS)] = "loky"
+    """`loky`: worker processes; `sequential`: none."""
+
+
+def _name(value: object) -> str:
+    if not isinstance(value, str) or not _NAME.fullmatch(value):
+        raise ValueError(
+            f"{show(value)} cannot name the folder of results; use 1 to 64 of A-Z, a-z, 0-9, - and _, "
+            "a letter or digit first, in quotes if it looks like a number"
+        )
+    return value
+
+
+def _model(value: Any, info: ValidationInfo) -> DividerConfig | PluginConfig:
+    section = PluginConfig if names_plugin(value) else DividerConfig
+    return section.model_validate(value, context=info.context)
+
+
+def names_plugin(model: object) -> bool:
+    """Whether a `model` section, as written, names a class of the user's own."""
+    return isinstance(model, Mapping) and isinstance(model.get("kind"), str) and ":" in model["kind"]
+
+
+def _range(parameter: Parameter, raw: object) -> tuple[float, float]:
+    if isinstance(raw, Mapping):
+        reserved = (
+            "`choices` and `step` are reserved" if {"choices", "step"} & raw.keys() else "a mapping is no range"
+        )
+        raise ValueError(f"{reserved}; write a range, [lower, upper]")
+    if not isinstance(raw, list | tuple) or len(raw) != 2:
+        raise ValueError(f"{show(raw)} is not a range; write two values, [lower, upper]")
+    ends = collect(dict(enumerate(raw)), (0, 1), "bound", lambda _, end: measure_of(parameter).read(end))
+    if ends[0] >= ends[1]:
+        raise ValueError(
+            f"the lower bound {show(raw[0])} is not below the upper, {show(raw[1])}; exchange or widen them"
+        )
+    return ends[0], ends[1]
+
+
+def _objective(quantity: Quantity, raw: object) -> ObjectiveConfig:
+    return ObjectiveConfig.model_validate({} if raw is None else raw, context=measure_of(quantity))
+
+
+def _constraint(quantity: Quantity, raw: object) -> ConstraintConfig:
+    return ConstraintConfig.model_validate(raw, context=measure_of(quantity))
+
+
+def _reference(value: Any, info: ValidationInfo) -> dict[str, float]:
+    """Read the reference point: nothing, or a value for every objective."""
+    point = by_name("quantities", lambda quantity, raw: measure_of(quantity).read(raw))(value, info)
+    objectives = info.data.get("objectives")
+    if not point or not objectives:
+        return point
+    found = [
+        mistake((name,), f"{name} is not an objective, so it has no place here; delete it", at_key=True)
+        for name in point
+        if name not in objectives
+    ]
+    lacking = [name for name in objectives if name not in point]
+    if lacking:
+        found.append(mistake((), f"{', '.join(lacking)} is lacking; give a value for every objective", at_key=True))
+    if found:
+        raise together(found)
+    return point
+
+
+class Campaign(Section):
+    """A campaign as resolved; `divideropt.campaign.load.load_campaign` reads one."""
+
+    name: Annotated[str, PlainValidator(_name), WithJsonSchema({"type": "string", "pattern": f"^{_NAME.pattern}$"})]
+    """Names the folder of results."""
+    model: Annotated[DividerConfig | PluginConfig, PlainValidator(_model, json_schema_input_type=DividerConfig)]
+    """What is optimised."""
+    variables: Annotated[
+        Mapping[str, tuple[float, float]],
+        PlainValidator(by_name("parameters", _range, least=1)),
+        WithJsonSchema(schemas.variables()),
+    ]
+    """Lower and upper bound of each parameter that varies, in its unit."""
+    objectives: Annotated[
+        Mapping[str, ObjectiveConfig],
+        PlainValidator(by_name("quantities", _objective, least=1)),
+        WithJsonSchema(schemas.objectives()),
+    ]
+    """What is minimised."""
+    constraints: Annotated[
+        Mapping[str, ConstraintConfig],
+        PlainValidator(by_name("quantities", _constraint)),
+        WithJsonSchema(schemas.constraints()),
+    ] = Field(default_factory=dict)
+    """What a feasible design keeps."""
+    reference_point: Annotated[
+        Mapping[str, float], PlainValidator(_reference), WithJsonSchema(schemas.reference_point())
+    ] = Field(default_factory=dict)
+    """Where the hypervolume is measured from: nothing, or a value for every objective."""
+    strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
+    """What runs, in this order."""
+    parallel: ParallelConfig = ParallelConfig()
+    """How the work is spread."""
+
+    @classmethod
+    def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
+        """Say what does not fit together between sections."""
+        fixed = _section(_section(raw, "model"), "set")
+        for name in _section(raw, "variables"):
+            if name in fixed:
+                sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
+                yield mistake(("variables", name), sentence, at_key=True)
+        aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
+        for name, objective in _section(raw, "objectives").items():
+            given = objective.get("goal") if isinstance(objective, Mapping) else None
+            if aggregating and given is None:
+                sentence = f"{name} has no goal, by which {aggregating} weighs the objectives; give one, {{goal: …}}"
+                yield mistake(("objectives", name), sentence, at_key=True)
+
+
+def _section(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    section = raw.get(name)
+    return section if isinstance(section, Mapping) else {}

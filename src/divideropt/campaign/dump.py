@@ -1,0 +1,96 @@
+"""A `Campaign` to YAML text that reads back as an equal campaign, to the bit; and the schema of campaigns."""
+
+import io
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.representer import SafeRepresenter
+
+from divideropt.campaign.config import Campaign, ConstraintConfig, ObjectiveConfig
+from divideropt.campaign.fields import measure_of
+from divideropt.models import Quantity
+
+
+def dump_campaign(campaign: Campaign) -> str:
+    """Write a campaign as resolved: every default filled in, every measure in the platform's units.
+
+    Args:
+        campaign: The campaign.
+
+    Returns:
+        YAML from which `parse_campaign` makes an equal campaign.
+    """
+    tables = campaign.model.tables()
+    parameters, quantities = tables.parameters or {}, tables.quantities or {}
+    data = campaign.model_dump(mode="json", exclude_none=True, exclude={"model", *_BY_NAME})
+    data["model"] = campaign.model.model_dump(mode="json", exclude_none=True)
+    data["model"]["set"] = _measures(campaign.model.set, parameters)
+    data["variables"] = {
+        name: [measure_of(parameters[name]).write(bound) for bound in bounds]
+        for name, bounds in campaign.variables.items()
+    }
+    data["objectives"] = _sections(campaign.objectives, quantities)
+    data["constraints"] = _sections(campaign.constraints, quantities)
+    data["reference_point"] = _measures(campaign.reference_point, quantities)
+    data["strategies"] = {plan.name: plan.as_written() for plan in campaign.strategies}
+    return _yaml({name: data[name] for name in Campaign.model_fields})
+
+
+def campaign_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of campaigns for the divider."""
+    schema = Campaign.model_json_schema()
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "title": "divideropt campaign",
+        "description": "A campaign for the flow divider, `model.kind: divider`.",
+    }
+
+
+_BY_NAME = ("variables", "objectives", "constraints", "reference_point", "strategies")
+"""Sections whose units hang on their keys, which pydantic cannot know."""
+
+
+def _measures(values: Mapping[str, float], table: Mapping[str, Any]) -> dict[str, str | float]:
+    return {name: measure_of(table[name]).write(value) for name, value in values.items()}
+
+
+def _sections(
+    sections: Mapping[str, ObjectiveConfig] | Mapping[str, ConstraintConfig], table: Mapping[str, Quantity]
+) -> dict[str, dict[str, str | float]]:
+    """Write objectives or constraints; every field but the weight is in the quantity's unit."""
+    return {
+        name: {
+            field: value if field == "weight" else measure_of(table[name]).write(value)
+            for field, value in section
+            if value is not None
+        }
+        for name, section in sections.items()
+    }
+
+
+def _yaml(data: dict[str, Any]) -> str:
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Representer = _CarefulRepresenter
+    yaml.default_flow_style = None  # the innermost collections on one line
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # ruamel annotates it as None
+    yaml.allow_unicode = True
+    yaml.width = 110
+    text = io.StringIO()
+    yaml.dump(data, text)
+    return text.getvalue()
+
+
+class _CarefulRepresenter(SafeRepresenter):
+    """Quotes every string that is not plainly plain: ruamel leaves `:1` bare in braces, and cannot read that."""
+
+    def represent_str(self, data: str) -> Any:
+        style = None if _PLAIN.fullmatch(data) else '"'
+        return self.represent_scalar("tag:yaml.org,2002:str", data, style=style)
+
+
+_PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+^/% -]*(?<! )", re.ASCII)
+
+_CarefulRepresenter.add_representer(str, _CarefulRepresenter.represent_str)

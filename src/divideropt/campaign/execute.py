@@ -1,0 +1,99 @@
+"""One run from beginning to end: the strategy asks, the log answers as far as it goes, then the model."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from divideropt.campaign.plan import Run
+from divideropt.errors import StoreError
+from divideropt.models.base import FloatArray
+from divideropt.problem import Evaluations, Problem, Told
+from divideropt.store import RunLog
+
+Simulate = Callable[[FloatArray], Evaluations]
+
+
+class StoppedError(Exception):
+    """Somebody asked the run to stop; what it computed is on disk."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is.
+
+    Attributes:
+        told: The latest batch.
+        replayed: Whether it came from the log.
+    """
+
+    told: Told
+    replayed: bool
+
+
+def execute(
+    run: Run,
+    problem: Problem,
+    log: RunLog,
+    simulate: Simulate,
+    report: Callable[[Progress], None],
+    stopping: Callable[[], bool],
+) -> None:
+    """Drive a run to the end of its budget.
+
+    Args:
+        run: What to run.
+        problem: On what.
+        log: Its log: answers first, and receives what is new.
+        simulate: Evaluates what the log does not know.
+        report: Hears of every batch.
+        stopping: Asked after every new batch.
+
+    Raises:
+        StoreError: The log holds another batch than the strategy asks for.
+        DiskError: The disk refused; what was flushed is intact.
+        StoppedError: `stopping` said yes; the log is flushed.
+    """
+    logged = log.replay()
+    count = 0
+
+    def evaluate(designs: FloatArray) -> Told:
+        nonlocal count
+        designs = np.ascontiguousarray(designs, dtype=np.float64)
+        known = _replayed(logged, designs, run.name, count)
+        count += 1
+        if known is not None:
+            told = problem.tell(known)
+        else:
+            fresh = simulate(designs)
+            log.append(fresh)
+            told = problem.tell(fresh)
+        report(Progress(told, replayed=known is not None))
+        if known is None and stopping():
+            raise StoppedError
+        return told
+
+    try:
+        run.options.run(problem, evaluate, run.seed)
+        leftover = next(logged, None)
+        if leftover is not None:
+            raise StoreError(
+                f"run {run.name}: the log holds more evaluations than its budget; "
+                "raise the budget again, or start anew (--fresh)"
+            )
+    finally:
+        log.flush()
+
+
+def _replayed(logged: Iterator[Evaluations], designs: FloatArray, run: str, count: int) -> Evaluations | None:
+    """Take the next batch from the log, if there is one, and check that it is the one asked for."""
+    batch = next(logged, None)
+    if batch is None:
+        return None
+    if batch.designs.shape != designs.shape or batch.designs.tobytes() != designs.tobytes():
+        raise StoreError(
+            f"run {run}: batch {count} of the log is not the one the strategy asks for, which should be the same "
+            "to the bit. Another version of a library, or another processor, computes differently; go on there, "
+            "or start anew (--fresh)."
+        )
+    return batch

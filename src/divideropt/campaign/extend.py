@@ -1,0 +1,72 @@
+"""May a store go on with this campaign? Only budgets, seeds and strategies may be added to."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from divideropt.campaign.config import Campaign
+from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.reader import read_text
+from divideropt.errors import StoreError
+
+BUDGETS = ("generations", "evaluations")
+"""Options that may grow."""
+
+_FIXED = ("name", "model", "variables", "objectives", "constraints", "reference_point")
+
+
+def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
+    """Check that a store's campaign and the one asked for are the same, or the latter asks for more.
+
+    Args:
+        stored: What the store was made with.
+        asked: What is to be run.
+        where: The store, for the message.
+
+    Raises:
+        StoreError: They differ; the message lists each differing key.
+    """
+    differences = list(_differences(stored, asked))
+    if differences:
+        raise StoreError(
+            f"{where}: this store belongs to another campaign:\n  "
+            + "\n  ".join(differences)
+            + "\nOnly generations, evaluations, seeds and strategies may be added; name another folder (--store), or "
+            "start anew (--fresh, which moves the old store aside)."
+        )
+
+
+def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
+    before, after = _as_written(stored), _as_written(asked)
+    for section in _FIXED:
+        yield from _compare(section, before[section], after[section])
+    for name, plan in before["strategies"].items():
+        if name in after["strategies"]:
+            yield from _compare_plans(f"strategies.{name}", plan, after["strategies"][name])
+        else:
+            yield f"strategies.{name}: in the store, not in the campaign"
+
+
+def _as_written(campaign: Campaign) -> Any:
+    """Return a campaign as resolved, as plain data with units: what a user can compare."""
+    return read_text(dump_campaign(campaign), "campaign").data
+
+
+def _compare(path: str, before: Any, after: Any) -> Iterator[str]:
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        for key in dict.fromkeys([*before, *after]):
+            yield from _compare(f"{path}.{key}", before.get(key), after.get(key))
+    elif before != after:
+        yield f"{path}: {before} in the store, {after} in the campaign"
+
+
+def _compare_plans(path: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
+    for option in dict.fromkeys([*before, *after]):
+        old, new = before.get(option), after.get(option)
+        if option == "seeds":
+            missing = [seed for seed in before["seeds"] if seed not in after["seeds"]]
+            if missing:
+                yield f"{path}.seeds: {missing} in the store, not in the campaign"
+        elif option not in BUDGETS:
+            yield from _compare(f"{path}.{option}", old, new)
+        elif before[option] > after[option]:
+            yield f"{path}.{option}: {old} in the store, {new} in the campaign; a budget can only grow"

@@ -1,0 +1,95 @@
+"""A campaign's file to a `Campaign`, with every mistake in it at once."""
+
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from divideropt.campaign.config import Campaign, names_plugin
+from divideropt.campaign.divider import DIVIDER_TABLES
+from divideropt.campaign.fields import Tables
+from divideropt.campaign.plugin import load_plugin
+from divideropt.campaign.reader import Document, KeyPath, read_document, read_text
+from divideropt.errors import FileMistakes, Mistake, UsageError
+
+
+def load_campaign(path: Path | str) -> Campaign:
+    """Read a campaign's file.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The campaign, every default filled in, every measure in the platform's units.
+
+    Raises:
+        UsageError: The file cannot be read.
+        FileMistakes: Everything wrong in the file, in the order of its lines.
+    """
+    return _campaign(read_document(path))
+
+
+def parse_campaign(text: str, path: str = "campaign") -> Campaign:
+    """Read a campaign from its text; `path` names it in mistakes. Otherwise as `load_campaign`."""
+    return _campaign(read_text(text, path))
+
+
+def default_campaign() -> Campaign:
+    """Return the campaign that ships with the package, for commands that need none."""
+    return parse_campaign(default_text(), "divider.yaml")
+
+
+def default_text() -> str:
+    """Return that campaign as its commented file, to start one's own from."""
+    return files("divideropt.campaign").joinpath("divider.yaml").read_text("utf-8")
+
+
+def _campaign(document: Document) -> Campaign:
+    found = list(document.mistakes)
+    try:
+        tables = _tables(document)
+    except UsageError as error:
+        tables = Tables()
+        found += _placed(document, ("model", "kind"), str(error))
+    try:
+        campaign = Campaign.model_validate(document.data, context=tables)
+    except ValidationError as error:
+        for detail in error.errors(include_url=False):
+            found += _reported(document, detail)
+    if found:
+        raise FileMistakes(document.path, list(dict.fromkeys(found)))
+    return campaign
+
+
+def _tables(document: Document) -> Tables:
+    """Return the names the campaign may use; its own model, if it names one, is imported for them."""
+    data = document.data
+    model: Any = data.get("model") if isinstance(data, Mapping) else None
+    if not names_plugin(model):
+        return DIVIDER_TABLES
+    options = model.get("options", {})
+    if document.mistakes or not isinstance(options, Mapping):
+        return Tables()  # nothing is imported on the word of a file that is refused anyway
+    made = load_plugin(model["kind"], options)
+    return Tables(made.parameters, made.quantities)
+
+
+def _reported(document: Document, detail: ErrorDetails) -> list[Mistake]:
+    return _placed(document, detail["loc"], str(detail["ctx"]["sentence"]), at_key=detail["ctx"]["at_key"])
+
+
+def _placed(document: Document, path: KeyPath, sentence: str, *, at_key: bool = False) -> list[Mistake]:
+    """Put a mistake in its place; nothing where the reader has refused that place already."""
+    if document.is_broken(path):
+        return []
+    place = document.place(path, at_key=at_key)
+    return [Mistake(place.line, place.column, f"{_dotted(path)}{sentence}")]
+
+
+def _dotted(path: KeyPath) -> str:
+    """Write a path as `model.solver.rtol: ` or `variables.spool_radius[0]: `."""
+    words = "".join(f"[{step}]" if isinstance(step, int) else f".{step[:60]}" for step in path)
+    return f"{words.removeprefix('.')}: " if words else ""

@@ -1,0 +1,118 @@
+"""The `strategies` section: which methods run, with which options and seeds."""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, cast
+
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
+
+from divideropt.campaign.reader import MOST_MISTAKES
+from divideropt.campaign.sections import collect, mistake, relay, show, together, unknown
+from divideropt.strategies import STRATEGIES, Strategy
+
+LARGEST_SEED = 2**32 - 1
+"""What NumPy's oldest generators take."""
+
+
+@dataclass(frozen=True)
+class StrategyPlan:
+    """A strategy as a campaign wants it run.
+
+    Attributes:
+        name: A key of `STRATEGIES`.
+        options: The strategy with its options.
+        seeds: One run each, in this order.
+    """
+
+    name: str
+    options: Strategy
+    seeds: tuple[int, ...]
+
+    def as_written(self) -> dict[str, Any]:
+        """Return options and seeds as a campaign's file has them."""
+        options = dataclasses.asdict(cast(Any, self.options))
+        return {key: value for key, value in options.items() if value is not None} | {"seeds": list(self.seeds)}
+
+
+def read_plans(value: object) -> tuple[StrategyPlan, ...]:
+    """Read the section; raises ValueError or ValidationError with every mistake."""
+    plans = tuple(collect(value, STRATEGIES, "strategy", _plan).values())
+    if not plans:
+        raise ValueError(f"there is no strategy here; name at least one of {', '.join(STRATEGIES)}")
+    return plans
+
+
+def plans_schema() -> dict[str, Any]:
+    """Describe the section in JSON schema."""
+    return {
+        "type": "object",
+        "description": "Which methods run, by name.",
+        "properties": {name: _plan_schema(strategy) for name, strategy in STRATEGIES.items()},
+        "additionalProperties": False,
+        "minProperties": 1,
+    }
+
+
+def needs_goals(name: str) -> bool:
+    """Whether a strategy of that name makes one objective of several, by their goals."""
+    return "aggregate" in _option_names(STRATEGIES[name]) if name in STRATEGIES else False
+
+
+def _distinct(seeds: tuple[int, ...]) -> tuple[int, ...]:
+    if not seeds:
+        raise ValueError("the list is empty, so the strategy would not run; write a seed, or delete the strategy")
+    first = {seed: i for i, seed in reversed(list(enumerate(seeds)))}
+    found = [
+        mistake((i,), f"the seed {seed} is here a second time, and would only repeat a run; delete it")
+        for i, seed in enumerate(seeds)
+        if i > first[seed]
+    ]
+    if found:
+        raise together(found)
+    return seeds
+
+
+_Seed = Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)]
+_SEEDS: TypeAdapter[tuple[int, ...]] = TypeAdapter(Annotated[tuple[_Seed, ...], AfterValidator(_distinct)])
+
+
+def _plan(name: str, raw: object) -> StrategyPlan:
+    if raw is not None and not isinstance(raw, Mapping):
+        raise ValueError(f"{show(raw)} is not a mapping; write options in braces, such as {name}: {{seeds: [1]}}")
+    given = dict(raw or {})
+    known = _option_names(STRATEGIES[name])
+    found = [
+        mistake((key,), unknown("option", key, [*known, "seeds"]), at_key=True)
+        for key in list(given)[:MOST_MISTAKES]
+        if key not in known and key != "seeds"
+    ]
+    seeds: tuple[int, ...] = ()
+    options: Any = None
+    try:
+        seeds = _SEEDS.validate_python(given.get("seeds", [1]))
+    except ValidationError as error:
+        found += relay(error, ("seeds",))
+    try:
+        options = cast(Any, STRATEGIES[name])(**{key: given[key] for key in known if key in given})
+    except ValidationError as error:
+        found += relay(error)
+    if found:
+        raise together(found)
+    return StrategyPlan(name, options, seeds)
+
+
+def _option_names(strategy: type[Strategy]) -> list[str]:
+    return [option.name for option in dataclasses.fields(cast(Any, strategy))]
+
+
+def _plan_schema(strategy: type[Strategy]) -> dict[str, Any]:
+    schema = TypeAdapter(strategy).json_schema()
+    seeds = _SEEDS.json_schema() | {
+        "description": "One run each.",
+        "minItems": 1,
+        "uniqueItems": True,
+        "default": [1],
+    }
+    properties = {**schema.get("properties", {}), "seeds": seeds}
+    return {**schema, "type": ["object", "null"], "properties": properties, "additionalProperties": False}

@@ -1,0 +1,181 @@
+"""How far the runs are: each process says so in a small file, and the parent shows them all."""
+
+import json
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from rich.console import Console
+from rich.live import Live
+from rich.table import Table
+
+from divideropt.analysis import best_attainment, hypervolume, nondominated
+from divideropt.campaign.execute import Progress
+from divideropt.models.base import FloatArray
+from divideropt.problem import Problem
+
+WRITE_SECONDS = 0.5
+"""How often a run says where it is."""
+
+SHOW_SECONDS = 0.5
+"""How often a terminal is repainted."""
+
+LINE_SECONDS = 10.0
+"""How often a line is printed where the output is no terminal."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where a run is.
+
+    Attributes:
+        run: Its name.
+        done: Evaluations answered.
+        budget: Most evaluations it asks for.
+        replayed: Those of them that came from the log.
+        rate: Evaluations simulated a second; 0 before the first.
+        best: Least max λ_i of its feasible designs; None where there is none, or no goals.
+        hypervolume: Of its feasible designs, None without a reference point.
+        finished: Whether the run has ended.
+    """
+
+    run: str
+    done: int
+    budget: int
+    replayed: int
+    rate: float
+    best: float | None
+    hypervolume: float | None
+    finished: bool
+
+
+class Reporter:
+    """Keeps a run's standing and writes it to a file now and then."""
+
+    def __init__(self, path: Path, run: str, budget: int, problem: Problem, reference: FloatArray | None) -> None:
+        """Begin with nothing done."""
+        self._path, self._run, self._budget = path, run, budget
+        self._problem, self._reference = problem, reference
+        self._done = self._replayed = 0
+        self._best: float | None = None
+        self._front = np.empty((0, len(problem.objectives)))
+        self._fresh: list[FloatArray] = []
+        self._began = self._written = time.monotonic()
+
+    def __call__(self, progress: Progress) -> None:
+        """Hear of a batch."""
+        n = len(progress.told.F)
+        self._done += n
+        if progress.replayed:
+            self._replayed += n
+            self._began = time.monotonic()
+        best = best_attainment(progress.told, self._problem)
+        if best is not None and (self._best is None or best[1] < self._best):
+            self._best = best[1]
+        self._fresh.append(progress.told.F[progress.told.feasible])
+        if time.monotonic() - self._written >= WRITE_SECONDS:
+            self.write(finished=False)
+
+    def write(self, *, finished: bool) -> None:
+        """Write the standing; a disk that refuses does not matter here."""
+        self._written = time.monotonic()
+        text = json.dumps(asdict(self._standing(finished)))
+        temporary = self._path.with_suffix(".new")
+        try:
+            temporary.write_text(text, encoding="utf-8")
+            temporary.replace(self._path)
+        except OSError:
+            return
+
+    def _standing(self, finished: bool) -> Standing:
+        self._front = np.concatenate([self._front, *self._fresh])
+        self._front = self._front[nondominated(self._front)]
+        self._fresh = []
+        elapsed = time.monotonic() - self._began
+        fresh = self._done - self._replayed
+        volume = None if self._reference is None else hypervolume(self._front, self._reference)
+        rate = fresh / elapsed if elapsed > 0 else 0.0
+        return Standing(self._run, self._done, self._budget, self._replayed, rate, self._best, volume, finished)
+
+
+class Display:
+    """Shows the standings of all runs until it is left."""
+
+    def __init__(self, folder: Path, runs: Sequence[str], stream: TextIO) -> None:
+        """Show the files of `folder` on `stream`, in colour and in place if that is a terminal."""
+        self._folder, self._runs = folder, runs
+        self._console = Console(file=stream, highlight=False)
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._show, daemon=True)
+
+    def __enter__(self) -> "Display":
+        """Begin to show."""
+        self._thread.start()
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        """Show the last standings and end."""
+        self._over.set()
+        self._thread.join()
+
+    def _show(self) -> None:
+        if self._console.is_terminal:
+            with Live(self._table(), console=self._console, auto_refresh=False) as live:
+                while not self._over.wait(SHOW_SECONDS):
+                    live.update(self._table(), refresh=True)
+                live.update(self._table(), refresh=True)
+            return
+        said: set[str] = set()
+        while not self._over.wait(LINE_SECONDS):
+            self._lines(said)
+        self._lines(said)
+
+    def _lines(self, said: set[str]) -> None:
+        """Print a line for each run that has something new to say."""
+        for standing in self._standings():
+            if standing.run not in said:
+                self._console.print(_line(standing), soft_wrap=True)
+            if standing.finished:
+                said.add(standing.run)
+
+    def _table(self) -> Table:
+        table = Table(box=None)
+        for heading in ("run", "evaluations", "", "rate [1/s]", "best max λ", "hypervolume"):
+            table.add_column(heading, justify="left" if heading == "run" else "right")
+        for s in self._standings():
+            table.add_row(
+                s.run,
+                f"{s.done} of {s.budget}",
+                "done" if s.finished else f"{100 * s.done / s.budget:.0f} %",
+                f"{s.rate:.0f}",
+                _number(s.best),
+                _number(s.hypervolume),
+            )
+        return table
+
+    def _standings(self) -> list[Standing]:
+        found = []
+        for run in self._runs:
+            try:
+                text = (self._folder / f"{run}.json").read_text(encoding="utf-8")
+                found.append(Standing(**json.loads(text)))
+            except (OSError, ValueError, TypeError):
+                continue
+        return found
+
+
+def _line(s: Standing) -> str:
+    state = "done" if s.finished else f"{100 * s.done / s.budget:.0f} %"
+    replayed = f", {s.replayed} from the log" if s.replayed else ""
+    return (
+        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({state}), {s.rate:.0f}/s, "
+        f"best max λ {_number(s.best)}, hypervolume {_number(s.hypervolume)}"
+    )
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4f}"

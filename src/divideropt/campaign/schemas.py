@@ -1,0 +1,90 @@
+"""JSON schema of the sections whose keys are the divider's parameters and quantities."""
+
+from collections.abc import Callable
+from typing import Any
+
+from divideropt.campaign.fields import POSITIVE, Measure, measure_of
+from divideropt.models import Parameter, Quantity
+from divideropt.models.divider.parameters import PARAMETERS
+from divideropt.models.divider.quantities import QUANTITIES
+from divideropt.models.divider.tolerances import STATE_UNITS
+
+Schema = dict[str, Any]
+
+
+def parameters() -> Schema:
+    """Values of parameters."""
+    return _mapping("Parameters that differ from the set.", {p.name: _value(p) for p in PARAMETERS.values()})
+
+
+def variables() -> Schema:
+    """Ranges of parameters."""
+    return _mapping("What varies, and between which bounds.", {p.name: _range(p) for p in PARAMETERS.values()}, 1)
+
+
+def objectives() -> Schema:
+    """Goals and weights of quantities."""
+    return _mapping("What is minimised.", _each(_objective), 1)
+
+
+def constraints() -> Schema:
+    """Bounds of quantities."""
+    return _mapping("What a feasible design keeps; bounds are inclusive.", _each(_constraint))
+
+
+def reference_point() -> Schema:
+    """Values of quantities."""
+    return _mapping("Where the hypervolume is measured from: a value for every objective.", _each(_value))
+
+
+def tolerances() -> Schema:
+    """Absolute tolerances of the states: a mapping by name, or a list of all."""
+    states = {name: Measure(unit, POSITIVE).schema() for name, unit in STATE_UNITS.items()}
+    listed = {"type": "array", "items": {"type": "string"}, "minItems": len(states), "maxItems": len(states)}
+    description = "Absolute tolerances; rtol × a scale of the state where not given."
+    return {"description": description, "anyOf": [_mapping("By state.", states), listed]}
+
+
+def _each(describe: Callable[[Quantity], Schema]) -> Schema:
+    return {q.name: describe(q) for q in QUANTITIES.values()}
+
+
+def _mapping(description: str, properties: Schema, least: int = 0) -> Schema:
+    return {
+        "type": "object",
+        "description": description,
+        "properties": properties,
+        "additionalProperties": False,
+        "minProperties": least,
+    }
+
+
+def _value(entry: Parameter | Quantity) -> Schema:
+    return measure_of(entry).schema(f"{entry.description} ({entry.symbol})" if entry.symbol else entry.description)
+
+
+def _range(parameter: Parameter) -> Schema:
+    value = _value(parameter)
+    return {
+        "type": "array",
+        "description": f"[lower, upper]; {value.pop('description')}",
+        "items": value,
+        "minItems": 2,
+        "maxItems": 2,
+    }
+
+
+def _objective(quantity: Quantity) -> Schema:
+    weight = Measure("", POSITIVE).schema("w of (3.24)")
+    section = _mapping(quantity.description, {"goal": _or_null(_value(quantity)), "weight": weight})
+    return {**section, "type": ["object", "null"]}
+
+
+def _constraint(quantity: Quantity) -> Schema:
+    bound = _or_null(_value(quantity))
+    return _mapping(quantity.description, {"min": bound, "max": bound}, 1)
+
+
+def _or_null(schema: Schema) -> Schema:
+    kinds = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
+    return {**schema, "type": [*kinds, "null"]}

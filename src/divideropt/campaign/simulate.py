@@ -1,0 +1,103 @@
+"""One response as a table: the work of `divideropt simulate`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from divideropt.campaign.config import Campaign
+from divideropt.campaign.plan import build_model
+from divideropt.errors import UsageError
+from divideropt.models import Verdict
+from divideropt.models.base import FloatArray
+from divideropt.models.divider import PARAMETERS, Divider
+from divideropt.models.divider.metrics import measure
+from divideropt.models.divider.response import Response
+from divideropt.units import parse_measure
+
+POINTS_PER_STEP = 4
+"""Rows of a table for each step the solver took."""
+
+COLUMNS = {
+    "time": "s",
+    "source_pressure": "Pa",
+    "intermediate_pressure_1": "Pa",
+    "intermediate_pressure_2": "Pa",
+    "end_pressure_1": "Pa",
+    "end_pressure_2": "Pa",
+    "spool_velocity": "m/s",
+    "spool_displacement": "m",
+    "load_pressure_1": "Pa",
+    "load_pressure_2": "Pa",
+    "load_flow_1": "m^3/s",
+    "load_flow_2": "m^3/s",
+}
+"""The columns of a response's table, in their order, with units: time, the nine states, the load flows."""
+
+
+@dataclass(frozen=True)
+class SimulatedResponse:
+    """One design's response.
+
+    Attributes:
+        table: Columns as in `COLUMNS`, one row an instant.
+        verdict: How the simulation ended.
+    """
+
+    table: pd.DataFrame
+    verdict: Verdict
+
+
+def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
+    """Simulate one design of a campaign.
+
+    Args:
+        campaign: Whose model, scenario and parameters.
+        settings: `NAME=VALUE` with a unit, for parameters that differ.
+
+    Returns:
+        The response.
+
+    Raises:
+        UsageError: A setting is no parameter, or out of its domain; or the model has no response to show.
+    """
+    model = build_model(campaign)
+    if not isinstance(model, Divider):
+        raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
+    parameters = campaign.model.base_parameters() | dict(_read(setting) for setting in settings)
+    response = model.respond(parameters)
+    return SimulatedResponse(_table(response), measure(response)[1])
+
+
+def _table(response: Response) -> pd.DataFrame:
+    blocks = [np.empty((0, len(COLUMNS)))]
+    for phase in response.phases:
+        if phase.trajectory is not None:
+            times = _times(phase.trajectory.edges)
+            states = phase.trajectory.at(times)
+            blocks.append(np.column_stack([times, states, phase.load_flows(states)]))
+    return pd.DataFrame(np.concatenate(blocks), columns=list(COLUMNS))
+
+
+def _times(edges: FloatArray) -> FloatArray:
+    """Spread instants evenly over each step, edges included."""
+    places = np.arange(POINTS_PER_STEP) / POINTS_PER_STEP
+    return np.append((edges[:-1, None] + np.diff(edges)[:, None] * places).ravel(), edges[-1])
+
+
+def _read(setting: str) -> tuple[str, float]:
+    name, equals, text = setting.partition("=")
+    name = name.strip()
+    if not equals:
+        raise UsageError(f"--set {setting}: there is no =; write NAME=VALUE, such as spool_radius='9 mm'")
+    if name not in PARAMETERS:
+        raise UsageError(f"--set {setting}: {name!r} is no parameter; use one of {', '.join(PARAMETERS)}")
+    parameter = PARAMETERS[name]
+    try:
+        value = parse_measure(text.strip(), parameter.unit)
+    except ValueError as error:
+        raise UsageError(f"--set {setting}: {error}") from None
+    if not parameter.domain.contains(value):
+        raise UsageError(f"--set {setting}: {name} must be {parameter.domain} {parameter.unit}".rstrip())
+    return name, value

@@ -1,0 +1,81 @@
+"""What a store holds and lacks: the work of `divideropt status`."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+from divideropt.analysis import best_attainment, hypervolume_history
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.campaign.worker import reference_of
+from divideropt.store import Store, TableSchema
+
+
+@dataclass(frozen=True)
+class RunStatus:
+    """One run.
+
+    Attributes:
+        run: Its name.
+        evaluations: Evaluations in the log.
+        budget: Most evaluations it asks for; a strategy may end earlier.
+        feasible: How many of them are feasible.
+        outcomes: How many ended how.
+        best: Least max λ_i, None without a feasible design or without goals.
+        best_design: The `design_id` that has it.
+        hypervolume: Of the feasible designs, None without a reference point.
+    """
+
+    run: str
+    evaluations: int
+    budget: int
+    feasible: int
+    outcomes: dict[str, int]
+    best: float | None
+    best_design: str | None
+    hypervolume: float | None
+
+
+@dataclass(frozen=True)
+class StoreStatus:
+    """A store.
+
+    Attributes:
+        campaign: The campaign's name.
+        runs: Each run, in the campaign's order.
+        front: Designs on the combined front, None before it is written.
+    """
+
+    campaign: str
+    runs: tuple[RunStatus, ...]
+    front: int | None
+
+
+def read_status(store: Store) -> StoreStatus:
+    """Read a store, at rest or at work.
+
+    Raises:
+        UsageError: There is no store.
+        StoreError: It is damaged.
+    """
+    campaign = parse_campaign(store.read_campaign(), str(store.campaign_path))
+    problem = build_problem(campaign)
+    schema, reference = TableSchema.of(problem), reference_of(campaign)
+    runs = []
+    for run in plan_runs(campaign):
+        table = store.log(run.name, schema).table()
+        told = problem.tell(schema.evaluations(table))
+        best = best_attainment(told, problem)
+        runs.append(
+            RunStatus(
+                run=run.name,
+                evaluations=table.num_rows,
+                budget=run.options.budget,
+                feasible=int(told.feasible.sum()),
+                outcomes=dict(sorted(Counter(table["outcome"].to_pylist()).items())),
+                best=None if best is None else best[1],
+                best_design=None if best is None else table["design_id"][best[0]].as_py(),
+                hypervolume=None if reference is None else hypervolume_history(told, reference, [table.num_rows])[0],
+            )
+        )
+    front = store.read_front("combined")
+    return StoreStatus(campaign.name, tuple(runs), None if front is None else front.num_rows)

@@ -1,0 +1,138 @@
+"""What a worker process does: one run, or a share of a batch; and how it ends with its parent."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from divideropt.campaign.config import Campaign
+from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.execute import Simulate, StoppedError, execute
+from divideropt.campaign.plan import Run, build_problem
+from divideropt.campaign.progress import Reporter
+from divideropt.errors import DivideroptError
+from divideropt.models.base import FloatArray
+from divideropt.problem import Evaluations, Problem
+from divideropt.store import Store, TableSchema
+
+WATCH_SECONDS = 0.5
+"""How often a worker looks whether its parent still lives."""
+
+STOP_FILE = "stop"
+"""Stands in the store's status folder while the runs are asked to stop."""
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a run ended.
+
+    Attributes:
+        run: Its name.
+        stopped: Whether it was asked to stop before its budget was spent.
+        error: What went wrong, if a user can mend it.
+    """
+
+    run: str
+    stopped: bool = False
+    error: DivideroptError | None = None
+
+
+def work_as_process(campaign: Campaign, folder: Path, run: Run) -> Ending:
+    """Do one run in a worker process of its own."""
+    leave_signals_to_parent()
+    problem = _problem(campaign)
+    return work(campaign, problem, folder, run, problem.simulate)
+
+
+def simulate_share(campaign: Campaign, designs: FloatArray) -> Evaluations:
+    """Evaluate a share of a batch in a worker process."""
+    leave_signals_to_parent()
+    return _problem(campaign).simulate(designs)
+
+
+def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate: Simulate) -> Ending:
+    """Do one run in this process.
+
+    Args:
+        campaign: As resolved.
+        problem: Made from it.
+        folder: The store's.
+        run: Which run.
+        simulate: Evaluates designs the log does not know.
+
+    Returns:
+        How it ended.
+    """
+    store = Store(folder)
+    stop = store.status_folder / STOP_FILE
+    reference = reference_of(campaign)
+    reporter = Reporter(store.status_folder / f"{run.name}.json", run.name, run.options.budget, problem, reference)
+    try:
+        with store.writing_run(run.name):
+            if stop.exists():
+                raise StoppedError
+            log = store.log(run.name, TableSchema.of(problem))
+            execute(run, problem, log, simulate, reporter, _throttled(stop.exists))
+    except StoppedError:
+        reporter.write(finished=False)
+        return Ending(run.name, stopped=True)
+    except DivideroptError as error:
+        return Ending(run.name, error=error)
+    reporter.write(finished=True)
+    return Ending(run.name)
+
+
+def reference_of(campaign: Campaign) -> FloatArray | None:
+    """The reference point of the hypervolume in the objectives' order, shape (k,), or None."""
+    if not campaign.reference_point:
+        return None
+    return np.array([campaign.reference_point[name] for name in campaign.objectives])
+
+
+def leave_signals_to_parent() -> None:
+    """Let the parent decide on an interrupt, and end with it: loky's workers would outlive it by minutes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _watch_parent()
+
+
+@cache
+def _watch_parent() -> None:
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(WATCH_SECONDS)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+_problems: dict[str, Problem] = {}
+
+
+def _problem(campaign: Campaign) -> Problem:
+    """Make the campaign's problem once a process."""
+    key = dump_campaign(campaign)
+    if key not in _problems:
+        _problems[key] = build_problem(campaign)
+    return _problems[key]
+
+
+def _throttled(question: Callable[[], bool], seconds: float = 0.1) -> Callable[[], bool]:
+    """Ask a question of the disk no more often than that."""
+    asked, answer = 0.0, False
+
+    def ask() -> bool:
+        nonlocal asked, answer
+        now = time.monotonic()
+        if now - asked >= seconds:
+            asked, answer = now, question()
+        return answer
+
+    return ask

@@ -1,0 +1,209 @@
+"""The command line: parse, call, exit code. Data goes to standard output, words to standard error."""
+
+import os
+import sys
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from divideropt.errors import DivideroptError, FileMistakes, NoFeasibleDesignError, UsageError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from divideropt.campaign.config import Campaign
+
+# Everything else is imported by the command that needs it, so that --help answers at once.
+# ruff: noqa: PLC0415
+
+_FILE = click.Path(path_type=Path)
+
+
+def main() -> None:
+    """Run the command and leave with its exit code."""
+    try:
+        code = commands.main(standalone_mode=False) or 0
+    except click.ClickException as error:
+        error.show()
+        code = 2
+    except click.Abort:
+        code = 130
+    except FileMistakes as error:
+        _say(str(error))  # file:line:column, which editors know
+        code = error.exit_code
+    except DivideroptError as error:
+        _say(f"divideropt: {error}")
+        code = error.exit_code
+    except KeyboardInterrupt:
+        code = 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    except Exception:
+        traceback.print_exc()
+        _say("divideropt: this is a bug in divideropt; the lines above say where. Nothing that was logged is lost.")
+        code = 1
+    sys.exit(code)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="divideropt")
+def commands() -> None:
+    """Multiobjective optimisation of simulated hydraulic components.
+
+    \b
+    Begin with
+      divideropt run campaigns/quickstart.yaml
+    and open results/quickstart/report.html.
+    """  # noqa: D301 (\b is click's)
+
+
+@commands.command()
+@click.argument("campaign", type=_FILE)
+@click.option("--store", type=_FILE, help="Folder of the results; results/NAME where not given.")
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes at a time; the campaign's where not given.")
+@click.option("--fresh", is_flag=True, help="Begin anew; an existing store is moved aside, not deleted.")
+def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) -> None:
+    """Run a campaign, or go on where its store stopped; write fronts and report."""
+    asked = _load(campaign)
+    from divideropt.campaign.runner import Runner
+    from divideropt.report import write_report
+    from divideropt.store import Store
+
+    folder = store or Path("results") / asked.name
+    runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr)
+    try:
+        size = runner.run(fresh=fresh).front
+    except NoFeasibleDesignError:
+        _say(f"report: {write_report(Store(folder))}")
+        raise
+    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({size} designs)")
+    _say(f"report: {write_report(Store(folder))}")
+
+
+@commands.command()
+@click.argument("store", type=_FILE)
+@click.option("--json", "as_json", is_flag=True, help="As JSON on standard output.")
+def status(store: Path, as_json: bool) -> None:
+    """Say what a store holds, what is left to do, and the best so far."""
+    import dataclasses
+    import json
+
+    from divideropt.campaign.status import read_status
+    from divideropt.store import Store
+
+    found = read_status(Store(store))
+    if as_json:
+        click.echo(json.dumps(dataclasses.asdict(found), indent=2))
+        return
+    click.echo(f"{found.campaign}: {_count(found.front)} designs on the combined front")
+    for item in found.runs:
+        outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
+        best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
+        volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
+        click.echo(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+
+
+@commands.command()
+@click.argument("store", type=_FILE)
+@click.option("--out", type=_FILE, help="Where to write it; report.html in the store where not given.")
+def report(store: Path, out: Path | None) -> None:
+    """Write the HTML report of a store again."""
+    from divideropt.report import write_report
+    from divideropt.store import Store
+
+    _say(f"report: {write_report(Store(store), out)}")
+
+
+@commands.command()
+@click.argument("designs", type=_FILE)
+@click.option("--campaign", type=_FILE, help="Whose model, scenario and parameters; divider.yaml's where not given.")
+@click.option("--out", type=_FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
+def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
+    """Evaluate every design of a CSV file: columns are parameters by name, SI."""
+    settings = _load(campaign)
+    _check_suffix(out, (".csv", ".parquet"))
+    from divideropt.campaign.designs import evaluate_designs, read_designs
+    from divideropt.campaign.plan import build_model
+
+    model = build_model(settings)
+    asked = read_designs(designs, tuple(model.parameters.values()))
+    _write_table(evaluate_designs(asked, model, settings.model.base_parameters()), out)
+
+
+@commands.command()
+@click.argument("campaign", type=_FILE, required=False)
+@click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
+)
+@click.option("--out", type=_FILE, help="A .csv, .parquet or .html file; CSV to standard output where not given.")
+def simulate(campaign: Path | None, settings: tuple[str, ...], out: Path | None) -> None:
+    """Simulate one response: a table, or a picture (.html)."""
+    asked = _load(campaign)
+    _check_suffix(out, (".csv", ".parquet", ".html"))
+    from divideropt.campaign.simulate import simulate as simulate_one
+
+    response = simulate_one(asked, settings)
+    if out is not None and out.suffix == ".html":
+        from divideropt.report import write_response
+
+        write_response(response, out)
+        _say(f"picture: {out}")
+    else:
+        _write_table(response.table, out)
+    _say(f"outcome: {response.verdict.outcome} {response.verdict.text}".rstrip())
+
+
+@commands.command()
+@click.argument("campaign", type=_FILE)
+def check(campaign: Path) -> None:
+    """Read a campaign and say every mistake in it, or what it would run."""
+    asked = _load(campaign)
+    from divideropt.campaign.plan import plan_runs
+
+    runs = plan_runs(asked)
+    budget = sum(run.options.budget for run in runs)
+    _say(f"{campaign}: right. {len(runs)} runs, at most {budget} evaluations: {', '.join(r.name for r in runs)}")
+
+
+@commands.command()
+def schema() -> None:
+    """Print the JSON schema of campaigns, for editors."""
+    import json
+
+    from divideropt.campaign.dump import campaign_schema
+
+    click.echo(json.dumps(campaign_schema(), indent=2, ensure_ascii=False))
+
+
+def _load(path: Path | None) -> "Campaign":
+    from divideropt.campaign.load import default_campaign, load_campaign
+
+    return default_campaign() if path is None else load_campaign(path)
+
+
+def _check_suffix(out: Path | None, known: tuple[str, ...]) -> None:
+    if out is not None and out.suffix not in known:
+        raise UsageError(f"--out {out}: the name must end in {' or '.join(known)}")
+
+
+def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
+    if out is None:
+        table.to_csv(sys.stdout, index=False)
+        return
+    from divideropt.store.files import publish
+
+    def write(path: Path) -> Any:
+        return table.to_parquet(path, index=False) if out.suffix == ".parquet" else table.to_csv(path, index=False)
+
+    publish(out, write)
+
+
+def _count(number: int | None) -> str:
+    return "no" if number is None else str(number)
+
+
+def _say(words: str) -> None:
+    click.echo(words, err=True)

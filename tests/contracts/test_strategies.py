@@ -1,0 +1,109 @@
+"""What every strategy promises: see `divideropt.strategies.base`."""
+
+import random
+
+import numpy as np
+import pytest
+
+from divideropt.analysis import hypervolume
+from divideropt.strategies import NSGA2, STRATEGIES, ComplexMethod, Genetic, GoalAttainment
+from toy_model import toy_problem
+
+SMALL = {
+    "nsga2": (NSGA2(population=12, generations=6), NSGA2(population=12, generations=9)),
+    "genetic": (Genetic(population=12, generations=6), Genetic(population=12, generations=9)),
+    "complex": (ComplexMethod(points=6, evaluations=70), ComplexMethod(points=6, evaluations=110)),
+    "goal_attainment": (
+        GoalAttainment(directions=7, evaluations=120),
+        GoalAttainment(directions=7, evaluations=200),
+    ),
+}
+
+
+def batches(strategy, seed=1, answers=None):
+    """Run a strategy on the toy; answer from a log as far as it goes."""
+    problem, asked = toy_problem(), []
+
+    def evaluate(designs):
+        asked.append(designs.copy())
+        if answers is not None and len(asked) <= len(answers):
+            assert asked[-1].tobytes() == answers[len(asked) - 1].tobytes()
+        return problem.tell(problem.simulate(designs))
+
+    strategy.run(problem, evaluate, seed)
+    return asked
+
+
+def test_every_strategy_is_under_contract():
+    assert set(SMALL) == set(STRATEGIES)
+
+
+@pytest.fixture(params=SMALL, name="pair")
+def _pair(request):
+    return SMALL[request.param]
+
+
+def test_one_seed_gives_the_same_batches_to_the_bit(pair):
+    first, second = batches(pair[0]), batches(pair[0])
+    assert [b.tobytes() for b in first] == [b.tobytes() for b in second]
+
+
+def test_another_seed_gives_others(pair):
+    assert batches(pair[0], seed=1)[0].tobytes() != batches(pair[0], seed=2)[0].tobytes()
+
+
+def test_a_run_replays_from_its_log_and_goes_on(pair):
+    whole = batches(pair[0])
+    again = batches(pair[0], answers=whole[: len(whole) // 2])
+    assert [b.tobytes() for b in again] == [b.tobytes() for b in whole]
+
+
+def test_a_larger_budget_begins_with_the_smaller(pair):
+    small, large = batches(pair[0]), batches(pair[1])
+    assert len(large) > len(small)
+    assert [b.tobytes() for b in large[: len(small)]] == [b.tobytes() for b in small]
+
+
+def test_it_stays_in_the_box_and_within_its_budget(pair):
+    asked = np.concatenate(batches(pair[0]))
+    assert asked.shape[1] == 3
+    assert np.all((asked >= 0.0) & (asked <= 1.0))
+    assert 0.8 * pair[0].budget <= len(asked) <= pair[0].budget
+
+
+def test_it_draws_from_no_unseeded_generator(pair, monkeypatch):
+    def forbidden(*args, **kwargs):
+        raise AssertionError("an unseeded generator was used")
+
+    seeded = np.random.default_rng
+
+    def default_rng(seed=None):
+        return forbidden() if seed is None else seeded(seed)
+
+    monkeypatch.setattr(np.random, "default_rng", default_rng)
+    for name in ("random", "rand", "randn", "randint", "uniform", "normal", "permutation", "shuffle", "choice"):
+        monkeypatch.setattr(np.random, name, forbidden)
+    for name in ("random", "randint", "uniform", "choice", "shuffle", "sample"):
+        monkeypatch.setattr(random, name, forbidden)
+    assert batches(pair[0])
+
+
+def test_it_beats_random_sampling(pair):
+    problem = toy_problem()
+    reference = np.array([1.0, 20.0])
+
+    def volume(designs):
+        told = problem.tell(problem.simulate(designs))
+        return hypervolume(told.F[told.feasible], reference)
+
+    def attained(designs):
+        told = problem.tell(problem.simulate(designs))
+        goals, weights = np.array([0.2, 2.0]), np.array([1.0, 2.0])
+        return ((told.F[told.feasible] - goals) / goals * weights).max(axis=1).min()
+
+    found = np.concatenate(batches(pair[1]))
+    blind = problem.space.sample(len(found), np.random.default_rng(5))
+    if hasattr(pair[1], "aggregate"):
+        assert attained(found) < attained(blind)
+    else:
+        assert volume(found) > volume(blind)

@@ -1,0 +1,139 @@
+"""The store: what is written is read back to the bit, and what is damaged is refused."""
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+
+from divideropt.errors import DiskError, StoreError, StoreInUseError
+from divideropt.store import Store, TableSchema
+from divideropt.store.files import publish
+from toy_model import toy_problem
+
+
+@pytest.fixture(name="problem")
+def _problem():
+    return toy_problem()
+
+
+def evaluations(problem, count, seed):
+    return problem.simulate(problem.space.sample(count, np.random.default_rng(seed)))
+
+
+def filled_log(store, problem, batches=5):
+    log = store.log("nsga2-1", TableSchema.of(problem))
+    written = [evaluations(problem, 7, seed) for seed in range(batches)]
+    for batch in written:
+        log.append(batch)
+        log.flush()
+    return written
+
+
+def test_a_log_is_read_back_to_the_bit(tmp_path, problem):
+    written = filled_log(Store(tmp_path), problem)
+    read = list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+    assert len(read) == len(written)
+    for before, after in zip(written, read, strict=True):
+        assert before.designs.tobytes() == after.designs.tobytes()
+        assert np.array_equal(before.quantities, after.quantities, equal_nan=True)
+        assert list(before.verdicts) == list(after.verdicts)
+
+
+def test_a_log_goes_on_after_a_replay(tmp_path, problem):
+    filled_log(Store(tmp_path), problem, batches=2)
+    log = Store(tmp_path).log("nsga2-1", TableSchema.of(problem))
+    list(log.replay())
+    log.append(evaluations(problem, 3, 9))
+    log.flush()
+    table = Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
+    assert table["design_id"].to_pylist() == [f"nsga2-1/{i}" for i in range(17)]
+    assert table["batch"].to_pylist() == [0] * 7 + [1] * 7 + [2] * 3
+
+
+def test_every_file_is_readable_by_pandas_alone_with_units_in_the_metadata(tmp_path, problem):
+    filled_log(Store(tmp_path), problem)
+    folder = tmp_path / "evaluations" / "nsga2-1"
+    frame = pd.read_parquet(folder)
+    assert list(frame.columns) == [
+        "design_id", "run", "batch", "x1", "x2", "x3", "f1", "f2", "spare", "outcome", "outcome_text"
+    ]  # fmt: skip
+    assert len(frame) == 35
+    assert frame["f2"].isna().sum() == (frame["outcome"] == "unsettled").sum() > 0
+    schema = pq.read_schema(next(folder.glob("*.parquet")))
+    assert schema.field("spare").metadata[b"unit"] == b"m"
+    assert schema.field("spare").metadata[b"role"] == b"constraint"
+    assert b"magnitude" in schema.field("f2").metadata[b"objective"]
+
+
+def test_a_part_of_another_campaign_is_refused_by_name(tmp_path, problem):
+    filled_log(Store(tmp_path), problem)
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    pq.write_table(pq.read_table(part).drop_columns(["x3"]), part)
+    with pytest.raises(StoreError, match=part.name):
+        list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+
+
+def test_a_later_version_is_refused_by_number(tmp_path, problem):
+    filled_log(Store(tmp_path), problem, batches=1)
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    table = pq.read_table(part)
+    pq.write_table(table.replace_schema_metadata({b"divideropt.schema_version": b"99"}), part)
+    with pytest.raises(StoreError, match="schema version 99, this program knows up to 1"):
+        Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
+
+
+def test_a_missing_part_is_noticed(tmp_path, problem):
+    filled_log(Store(tmp_path), problem)
+    sorted((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))[2].unlink()
+    with pytest.raises(StoreError, match="batch 2 is missing"):
+        list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+
+
+def test_a_damaged_part_is_refused_never_read_wrong(tmp_path, problem):
+    filled_log(Store(tmp_path), problem, batches=1)
+    schema = TableSchema.of(problem)
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    whole, honest = part.read_bytes(), Store(tmp_path).log("nsga2-1", schema).table()
+    random = np.random.default_rng(0)
+    for place in random.integers(0, len(whole), 60):
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << int(random.integers(8))
+        part.write_bytes(damaged)
+        try:
+            read = Store(tmp_path).log("nsga2-1", schema).table()
+        except StoreError as error:
+            assert part.name in str(error)
+        else:
+            assert read.equals(honest)
+
+
+def test_a_second_writer_is_refused(tmp_path):
+    with (
+        Store(tmp_path).writing(),
+        pytest.raises(StoreInUseError, match="another divideropt"),
+        Store(tmp_path).writing(),
+    ):
+        pass
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path):
+    path = tmp_path / "front.parquet"
+    path.write_text("old")
+
+    def fail(temporary):
+        temporary.write_text("half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(DiskError, match="No space left on device") as caught:
+        publish(path, fail)
+    assert caught.value.exit_code == 74
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["front.parquet"]
+
+
+def test_an_old_store_is_moved_aside_not_deleted(tmp_path):
+    folder = tmp_path / "store"
+    Store(folder).write_campaign("name: x\n")
+    aside = Store(folder).move_aside()
+    assert not folder.exists()
+    assert (aside / "campaign.yaml").read_text() == "name: x\n"

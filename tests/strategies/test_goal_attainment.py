@@ -1,0 +1,39 @@
+import numpy as np
+
+from divideropt.strategies.goal_attainment import SMALLEST_WEIGHT, GoalAttainment, reference_directions
+from toy_model import toy_problem
+
+
+def test_the_directions_are_the_das_dennis_lattice_on_a_path_of_neighbours():
+    directions = reference_directions(3, 91)
+    assert directions.shape == (91, 3)
+    assert np.isclose(np.where(directions <= SMALLEST_WEIGHT, 0.0, directions).sum(axis=1), 1.0).all()
+    assert len(np.unique(directions.round(9), axis=0)) == 91
+    assert np.abs(np.diff(directions, axis=0)).max() <= 2 / 12 + SMALLEST_WEIGHT
+
+
+def test_fewer_directions_than_a_lattice_has_give_the_next_smaller_lattice():
+    assert len(reference_directions(3, 90)) == 78
+    assert len(reference_directions(2, 20)) == 20
+    assert len(reference_directions(1, 20)) == 1
+
+
+def test_the_sweep_solves_the_problem_of_each_direction():
+    problem, told = toy_problem(), []
+
+    def evaluate(designs):
+        told.append(problem.tell(problem.simulate(designs)))
+        return told[-1]
+
+    GoalAttainment(directions=11, evaluations=1500).run(problem, evaluate, seed=1)
+    F = np.concatenate([t.F[t.feasible] for t in told])
+    # The front is f2 = 1.05/(0.1 + f1), with f1 from the constraint's 0.1 to 1.
+    f1 = np.linspace(0.1, 1.0, 10_001)
+    front = np.column_stack([f1, 1.05 / (0.1 + f1)])
+    ideal, span = front.min(axis=0), np.ptp(front, axis=0)
+    for direction in reference_directions(2, 11):
+        best, optimum = (((f - ideal) / span / direction).max(axis=1).min() for f in (F, front))
+        if direction.min() > SMALLEST_WEIGHT:
+            assert best < 1.05 * optimum
+        else:  # an end of the front, where the optimum is 0
+            assert best * direction.min() < 0.02

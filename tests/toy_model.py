@@ -1,0 +1,43 @@
+"""A model that costs nothing: two objectives in conflict, a region where it fails, a signed quantity."""
+
+import numpy as np
+
+from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
+from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
+
+_UNIT = Domain(0.0, 1.0)
+
+
+class Toy:
+    """Minimise f1 = x1 and f2 = (1 + x2)/(0.1 + x1), which conflict; x3 only adds to f2."""
+
+    def __init__(self, failing_below=0.05):
+        self.failing_below = failing_below
+        self.parameters = {n: Parameter(n, "", n, "a number", 0.5, _UNIT) for n in ("x1", "x2", "x3")}
+        self.quantities = {
+            "f1": Quantity("f1", "", "f1", "first objective", 1.0),
+            "f2": Quantity("f2", "", "f2", "second objective", 1.0, signed=True),
+            "spare": Quantity("spare", "m", "s", "what is left", 1.0),
+        }
+
+    def evaluate(self, designs):
+        x1, x2, x3 = designs.T
+        f2 = -(1 + x2) * (1 + (x3 - 0.3) ** 2) / (0.1 + x1)
+        quantities = np.column_stack([x1, f2, x1 - 0.1])
+        failed = x2 < self.failing_below
+        quantities[failed, 1] = np.nan
+        text = "x2 is too small"
+        return quantities, [Verdict(Outcome.UNSETTLED, text) if f else Verdict(Outcome.OK) for f in failed]
+
+
+def toy_problem():
+    """The toy as a problem with goals and a constraint."""
+    model = Toy()
+    q = model.quantities
+    return Problem(
+        model=model,
+        fixed={name: p.default for name, p in model.parameters.items()},
+        space=DesignSpace(tuple(Variable(p, 0.0, 1.0) for p in model.parameters.values())),
+        objectives=(Objective(q["f1"], goal=0.2, weight=1.0), Objective(q["f2"], goal=2.0, weight=2.0)),
+        constraints=(Constraint(q["spare"], minimum=0.0),),
+    )
