@@ -81,7 +81,7 @@ def _factor(given: str, wanted: str) -> Decimal:
         return Decimal(registry.Quantity(Decimal(1), _pint_name(given)).to(_pint_name(wanted)).magnitude)
     except pint.UndefinedUnitError:
         raise ValueError(f"the unit {given!r} is not known; here {_wanted(wanted)}") from None
-    except (pint.PintError, AssertionError, ArithmeticError):  # a logarithmic or offset unit may be any of these
+    except (pint.PintError, AssertionError, ArithmeticError, TypeError):  # a logarithmic or offset unit
         raise ValueError(f"the unit {given!r} is of another kind; here {_wanted(wanted)}") from None
 
 

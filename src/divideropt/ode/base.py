@@ -48,7 +48,8 @@ class Trajectory:
         edges: Step boundaries, shape (k + 1,), strictly increasing.
         values: States at the nodes of each step, shape (k, n, NODES_PER_STEP); the first node of a step is its
             left edge, the last its right.
-        status: How the integration ended; where it is not FINISHED, the last edge is where it gave up.
+        status: How the integration ended; after FAILED or STEP_BUDGET the last edge is where it gave up, unless not
+            even one step was taken.
         message: What the solver said then.
     """
 

@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy.integrate import BDF, LSODA, Radau
+from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 from scipy.optimize import brentq
 
 from divideropt.ode.base import (
@@ -40,10 +40,12 @@ def integrate(
         span: First and last time.
         start: State at the first time, shape (n,).
         settings: Method, tolerances, budget.
-        event: A function of the state; the trajectory ends where it first becomes positive.
+        event: A function of the state; the trajectory ends within the first step at whose end it is positive, where
+            it has become so.
 
     Returns:
-        The trajectory, up to the event or to where the solver gave up; it holds at least one step.
+        The trajectory, up to the event or to where the solver gave up. It holds at least one step: if the very first
+        failed, the start's state over the whole span.
     """
     solver = METHODS[settings.method](
         rates,
@@ -57,9 +59,9 @@ def integrate(
     edges, values = [span[0]], []
     status, message = SolverStatus.STEP_BUDGET, f"{settings.max_steps} steps did not suffice"
     for _ in range(settings.max_steps):
-        failure = solver.step()
-        if solver.status == "failed":
-            status, message = SolverStatus.FAILED, failure or ""
+        failure = _step(solver)
+        if failure is not None:
+            status, message = SolverStatus.FAILED, failure
             break
         left, width = edges[-1], solver.t - edges[-1]
         dense = solver.dense_output()
@@ -77,6 +79,19 @@ def integrate(
         edges.append(span[1])
         values.append(np.repeat(start[:, None], len(NODES), axis=1))
     return Trajectory(np.array(edges), np.array(values), status, message)
+
+
+def _step(solver: OdeSolver) -> str | None:
+    """Take a step; return why there was none, in words, or None."""
+    try:
+        failure = solver.step()
+    except ValueError as error:  # SciPy refuses to factorise a Jacobian that is not finite
+        return str(error)
+    if solver.status == "failed":
+        return failure or "no step was small enough"
+    if not np.isfinite(solver.y).all():  # LSODA would go on
+        return "the state is no longer a number"
+    return None
 
 
 def _crossing(event: Event, values: FloatArray) -> float:

@@ -24,6 +24,10 @@ LARGEST_VIOLATION = 1e6
 FAILURE_VIOLATION = 1e9
 """Violation of the failure constraint by a design whose outcome is not ok."""
 
+INFEASIBLE_MERIT = 1e9
+"""Merit at which infeasible designs begin: beyond any aggregate of a working valve, and small enough that a
+violation of 1e-6 is not lost beside it."""
+
 
 @dataclass(frozen=True)
 class Evaluations:
@@ -127,6 +131,6 @@ def merit(value: FloatArray, told: Told) -> FloatArray:
         told: The batch.
 
     Returns:
-        The value where feasible; elsewhere, beyond any feasible value, the violation. Shape (n,).
+        The value where feasible, at most `INFEASIBLE_MERIT`; elsewhere that and the violation. Shape (n,).
     """
-    return np.where(told.feasible, value, LARGEST_VIOLATION + told.violation)
+    return np.where(told.feasible, np.minimum(value, INFEASIBLE_MERIT), INFEASIBLE_MERIT + told.violation)

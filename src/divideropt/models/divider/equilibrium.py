@@ -15,11 +15,11 @@ from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Stop
 from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
 
-TOLERANCE = 1e-11
+TOLERANCE = 1e-13
 """Residual at which Newton stops: flows over the source flow, forces over `FORCE_SCALE` times the end area."""
 
 ITERATIONS = 60
-"""Budget of Newton iterations; from a sensible start six suffice."""
+"""Budget of Newton iterations; from the end of a response two or three suffice."""
 
 HALVINGS = 12
 """How often a Newton step is halved before it is taken as lost."""

@@ -70,8 +70,11 @@ FRICTION_VELOCITY = 1e-6
 STOP_STIFFNESS = 1e8
 """End stop [N/m]: the largest end force, some 2 kN, presses the spool 20 µm into it."""
 
-STOP_DAMPING = 5.0
-"""Damping of the contact [s/m], after Hunt and Crossley: force k d (1 + damping·ḋ), never pulling."""
+STOP_DAMPING = 5e3
+"""End stop [N s/m]: about critical for the stiffness and the mass of a spool, so that it does not chatter."""
+
+STOP_ONSET = 1e-7
+"""Depth [m] over which the damping sets in, so that the force is continuous at the touch."""
 
 SMALLEST_VOLUME = 1e-15
 """What C.3 puts for an end chamber that has vanished [m^3]."""
@@ -213,6 +216,7 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
     jac[8, 8] = g * (-QL2_ - QLo2_) * PL2_
 
     # The spool, (2.17), with C.3's transient flow force, both jets braking.
+    drag_Pa1_, drag_Pa2_, drag_PL1_, drag_PL2_ = Pa1_, Pa2_, PL1_, PL2_
     if d.pressure_floor == 0:  # forces see the pressures as they are
         Pa1, Pa2, Pb1, Pb2, PL1, PL2 = y[1], y[2], y[3], y[4], y[7], y[8]
         Pa1_, Pa2_, Pb1_, Pb2_, PL1_, PL2_ = 1.0, 1.0, 1.0, 1.0, 1.0, 1.0
@@ -230,16 +234,16 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
         + d.extra_force
         + stop
     ) / m
-    jac[5, 1] = (-rim * w1 - d.transient * w1 * root_1_ * xdot) / m * Pa1_
-    jac[5, 2] = (rim * w2 - d.transient * w2 * root_2_ * xdot) / m * Pa2_
+    jac[5, 1] = (-rim * w1 * Pa1_ - d.transient * w1 * root_1_ * xdot * drag_Pa1_) / m
+    jac[5, 2] = (rim * w2 * Pa2_ - d.transient * w2 * root_2_ * xdot * drag_Pa2_) / m
     jac[5, 3] = d.end_area / m * Pb1_
     jac[5, 4] = -d.end_area / m * Pb2_
     friction_v = d.coulomb_friction * (1.0 - friction * friction) / FRICTION_VELOCITY
     jac[5, 5] = (-d.viscous_friction - drag - friction_v + stop_v) / m * x_
     brake_x = d.transient * (w1_x * root_1 + w2_x * root_2) * xdot
     jac[5, 6] = (rim * w1_x * (PL1 - Pa1) - rim * w2_x * (PL2 - Pa2) - brake_x + stop_x) / m
-    jac[5, 7] = (rim * w1 + d.transient * w1 * root_1_ * xdot) / m * PL1_
-    jac[5, 8] = (-rim * w2 + d.transient * w2 * root_2_ * xdot) / m * PL2_
+    jac[5, 7] = (rim * w1 * PL1_ + d.transient * w1 * root_1_ * xdot * drag_PL1_) / m
+    jac[5, 8] = (-rim * w2 * PL2_ + d.transient * w2 * root_2_ * xdot * drag_PL2_) / m
     out[6] = xdot
     jac[6, 5] = x_
 
@@ -290,14 +294,13 @@ def _stop_force(x, xdot, d):  # type: ignore[no-untyped-def]
     if d.stop != 0 or depth <= 0.0:
         return 0.0, 0.0, 0.0
     side = math.copysign(1.0, x)
-    grip = 1.0 + STOP_DAMPING * side * xdot
-    if grip <= 0.0:
+    onset = min(depth / STOP_ONSET, 1.0)
+    push = STOP_STIFFNESS * depth + STOP_DAMPING * onset * side * xdot
+    if push <= 0.0:  # a stop does not pull
         return 0.0, 0.0, 0.0
-    return (
-        -side * STOP_STIFFNESS * depth * grip,
-        -STOP_STIFFNESS * grip,
-        -STOP_STIFFNESS * depth * STOP_DAMPING,
-    )
+    onset_x = side / STOP_ONSET if onset < 1.0 else 0.0
+    slope = STOP_STIFFNESS * side + STOP_DAMPING * onset_x * side * xdot
+    return -side * push, -side * slope, -STOP_DAMPING * onset
 
 
 def blank_coefficients() -> NDArray[np.record]:

@@ -96,9 +96,9 @@ def _rests_at_root(response: Response) -> bool:
 
 def _final_state(response: Response) -> FloatArray | None:
     last = response.phases[-1]
-    if _rests_at_root(response) and last.trajectory is not None:
-        return None if last.rest is None else last.rest.state
-    return last.end
+    if last.end is None or not _rests_at_root(response):
+        return last.end
+    return None if last.rest is None else last.rest.state
 
 
 def _steady(response: Response, final: FloatArray, flows: FloatArray) -> dict[str, float]:

@@ -24,20 +24,14 @@ class Phase:
     Attributes:
         design: `COEFFICIENTS` in force, shape (1,).
         trajectory: The states; None where no time passes, or where the simulation did not get there.
-        rest: Equilibrium under these inputs: for a phase without a trajectory sought from a guess, else from the
-            trajectory's end; None if there is none or it was not sought.
+        end: State at the end of the phase, shape (9,); None where the simulation did not get there.
+        rest: Equilibrium under these inputs, sought from the last state simulated; None if there is none.
     """
 
     design: NDArray[np.record]
     trajectory: Trajectory | None
+    end: FloatArray | None
     rest: Equilibrium | None
-
-    @property
-    def end(self) -> FloatArray | None:
-        """State at the end of the phase, shape (9,), or None if it was not reached."""
-        if self.trajectory is None:
-            return None if self.rest is None else self.rest.state
-        return self.trajectory.final if self.trajectory.status is SolverStatus.FINISHED else None
 
     def load_flows(self, states: FloatArray) -> FloatArray:
         """Return QL1 and QL2 [m^3/s] through the load orifices, (3.3), (3.4).
@@ -88,21 +82,29 @@ def respond(
         The response, as far as it came.
     """
     geometry = derive_geometry(parameters, holes=formulation.arc_holes)
-    state = None if scenario.settled else zero_state()
-    reached = True
-    phases = []
+    phases: list[Phase] = []
     for inputs, begin, end in scenario.phases():
         sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, formulation)
         design = coefficients(parameters, geometry, sides, inputs, formulation)
-        if not reached:
-            phase = Phase(design, None, None)
-        elif state is None:
-            phase = Phase(design, None, find_equilibrium(design, initial_guess(design)))
+        if not phases and scenario.settled:
+            phases.append(_at_rest(design))
+            continue
+        start = phases[-1].end if phases else zero_state()
+        if start is None:
+            phases.append(_not_reached(design, phases[-1]))
         else:
-            phase = _integrate(design, (begin, end), state, settings)
-        state, reached = phase.end, phase.end is not None
-        phases.append(phase)
+            phases.append(_integrate(design, (begin, end), start, settings))
     return Response(scenario, parameters, geometry, tuple(phases))
+
+
+def _at_rest(design: NDArray[np.record]) -> Phase:
+    rest = find_equilibrium(design, initial_guess(design))
+    return Phase(design, None, None if rest is None else rest.state, rest)
+
+
+def _not_reached(design: NDArray[np.record], earlier: Phase) -> Phase:
+    guess = initial_guess(design) if earlier.rest is None else earlier.rest.state
+    return Phase(design, None, None, find_equilibrium(design, guess))
 
 
 def _integrate(
@@ -112,8 +114,8 @@ def _integrate(
         trajectory = _integrate_to_frozen_stop(design, span, start, settings)
     else:
         trajectory = _run(design, span, start, settings)
-    finished = trajectory.status is SolverStatus.FINISHED
-    return Phase(design, trajectory, find_equilibrium(design, trajectory.final) if finished else None)
+    end = trajectory.final if trajectory.status is SolverStatus.FINISHED else None
+    return Phase(design, trajectory, end, find_equilibrium(design, trajectory.final))
 
 
 def _integrate_to_frozen_stop(

@@ -1,0 +1,123 @@
+"""What several tests share: designs, the record a kernel reads, and the author's data."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import settings
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from divideropt.models.divider import FORMULATIONS, QUANTITIES, Divider, Scenario, parameter_set
+from divideropt.models.divider.geometry import derive_geometry
+from divideropt.models.divider.metrics import measure
+from divideropt.models.divider.pilot import pilot_sides
+from divideropt.models.divider.response import Response
+from divideropt.models.divider.scenario import coefficients
+
+# A run must say the same twice; and the first call of a kernel compiles it, which takes longer than any deadline.
+settings.register_profile("divideropt", deadline=None, derandomize=True, database=None)
+settings.load_profile("divideropt")
+
+REFERENCE = Path(__file__).parent / "reference"
+
+LISTING_COLUMNS = {
+    "r": "spool_radius",
+    "b": "groove_width",
+    "deltaPt": "total_pressure_drop",
+    "Po_Pt": "fixed_drop_ratio",
+    "frac_open": "centred_opening",
+    "rsr": "stem_ratio",
+}
+"""The parameters' names in the author's files."""
+
+BOX = {
+    "spool_radius": (6e-3, 16e-3),
+    "groove_width": (0.6e-3, 2e-3),
+    "total_pressure_drop": (2e6, 10e6),
+    "fixed_drop_ratio": (0.3, 0.99),
+    "centred_opening": (0.1, 0.9),
+}
+"""Variables and bounds of C.6, SI."""
+
+
+def _design(base: str = "thesis_base", /, **changes: float) -> dict[str, float]:
+    unknown = changes.keys() - parameter_set(base).keys()
+    assert not unknown, f"no such parameters: {unknown}"
+    return parameter_set(base) | changes
+
+
+@pytest.fixture(scope="session")
+def design() -> Callable[..., dict[str, float]]:
+    """`design(**changes)`: a named parameter set, Appendix B.1 unless said otherwise, with changes."""
+    return _design
+
+
+@pytest.fixture(scope="session")
+def record() -> Callable[..., NDArray[np.record]]:
+    """`record(parameters, formulation, phase=-1, scenario)`: what the kernel reads, shape (1,)."""
+
+    def make(
+        parameters: dict[str, float],
+        formulation: str = "conservative",
+        phase: int = -1,
+        scenario: Scenario | None = None,
+    ) -> NDArray[np.record]:
+        reading = FORMULATIONS[formulation]
+        inputs = (scenario or Scenario()).phases()[phase][0]
+        geometry = derive_geometry(parameters, holes=reading.arc_holes)
+        sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, reading)
+        return coefficients(parameters, geometry, sides, inputs, reading)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def measured() -> Callable[..., dict[str, Any]]:
+    """`measured(model, parameters, response=None)`: quantities by name, and the verdict as "outcome" and "text"."""
+
+    def run(model: Divider, parameters: dict[str, float], response: Response | None = None) -> dict[str, Any]:
+        row, verdict = measure(response or model.respond(parameters))
+        named = dict(zip(QUANTITIES, row.tolist(), strict=True))
+        return named | {"outcome": verdict.outcome, "text": verdict.text}
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def box_designs() -> Callable[[int], list[dict[str, float]]]:
+    """`box_designs(count)`: the first points of a Sobol sequence in the box of C.6, on Appendix B.1."""
+
+    def draw(count: int) -> list[dict[str, float]]:
+        lower, upper = np.array(list(BOX.values())).T
+        power = int(np.ceil(np.log2(count)))
+        points = qmc.scale(qmc.Sobol(len(BOX), rng=0).random_base2(power), lower, upper)[:count]
+        return [_design(**dict(zip(BOX, point.tolist(), strict=True))) for point in points]
+
+    return draw
+
+
+@pytest.fixture(scope="session")
+def reference() -> Callable[[str], pd.DataFrame]:
+    """`reference(name)`: one of the author's files, see tests/reference/README.md."""
+
+    def read(name: str) -> pd.DataFrame:
+        text = pd.read_csv(REFERENCE / f"{name}.csv", dtype=str, keep_default_na=False)
+        words = {"kind", "pset", "param"}
+        # `float` rounds correctly; pandas's own parser need not, and a last bit decides what is on a port's edge.
+        return pd.DataFrame({c: text[c] if c in words else [float(v or "nan") for v in text[c]] for c in text})
+
+    return read
+
+
+@pytest.fixture(scope="session")
+def listing_design() -> Callable[[Any], dict[str, float]]:
+    """`listing_design(row)`: the parameters of a row of the author's files."""
+
+    def convert(row: Any) -> dict[str, float]:
+        return _design(**{name: float(getattr(row, column)) for column, name in LISTING_COLUMNS.items()})
+
+    return convert
