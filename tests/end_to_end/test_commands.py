@@ -287,12 +287,15 @@ def test_a_killed_campaign_goes_on_to_the_same_cells(tmp_path, uninterrupted, wh
     assert_same_fronts(tmp_path, uninterrupted)
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_stops_within_seconds_and_names_the_line_that_goes_on(tmp_path, uninterrupted, number, code):
+@pytest.mark.parametrize(
+    ("number", "send", "code"),
+    [(signal.SIGINT, os.killpg, 130), (signal.SIGTERM, os.kill, 143), (signal.SIGTERM, os.killpg, 143)],
+)
+def test_a_signal_stops_within_seconds_and_names_the_line_that_goes_on(tmp_path, uninterrupted, number, send, code):
     process = start(tmp_path)
     wait_for_parts(tmp_path, 1)
     asked = time.monotonic()
-    (os.killpg if number == signal.SIGINT else os.kill)(process.pid, number)
+    send(process.pid, number)
     assert process.wait(timeout=60) == code
     assert time.monotonic() - asked < 5.0
     assert "The same command goes on" in words(tmp_path)

@@ -24,7 +24,7 @@ WRITE_SECONDS = 0.5
 SHOW_SECONDS = 0.5
 """How often a terminal is repainted."""
 
-LINE_SECONDS = 10.0
+LINE_SECONDS = 30.0
 """How often a line is printed where the output is no terminal."""
 
 

@@ -139,6 +139,8 @@ class Runner:
         try:
             return list(pool(tasks))
         except TerminatedWorkerError as error:
+            if self._signal is not None:  # which reached a worker before it could ignore it
+                raise InterruptedRunError(self._signal, self._store.folder) from error
             raise WorkerLostError(
                 "a worker process was killed, perhaps for want of memory. What was logged is intact: "
                 "run the same command again."

@@ -96,8 +96,9 @@ def reference_of(campaign: Campaign) -> FloatArray | None:
 
 
 def leave_signals_to_parent() -> None:
-    """Let the parent decide on an interrupt, and end with it: loky's workers would outlive it by minutes."""
+    """Let the parent decide on a signal to all, and end with it: loky's workers would outlive it by minutes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     _watch_parent()
 
 

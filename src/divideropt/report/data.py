@@ -1,0 +1,260 @@
+"""A store to what its report says: frozen, in the platform's units, without a word of how it is drawn."""
+
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+import pyarrow as pa
+
+from divideropt.analysis import combined_front, run_front
+from divideropt.campaign.config import Campaign
+from divideropt.campaign.divider import DividerConfig
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.models.base import FloatArray
+from divideropt.problem import Problem
+from divideropt.report.display import Axis, axis_of
+from divideropt.report.front import Design, Leaning, designs_of, leanings
+from divideropt.report.responses import Responses, read_responses
+from divideropt.report.runs import RunFacts, read_run
+from divideropt.report.sampling import spread
+from divideropt.store import Store, TableSchema
+
+MOST_DRAWN = 4000
+"""Designs of the front that the figures draw: SVG gets slow beyond."""
+
+MOST_ROWS = 1000
+"""Designs of the front in the page's table."""
+
+LIBRARIES = ("divideropt", "numpy", "scipy", "numba", "pymoo", "moocore", "pandas", "pyarrow", "plotly", "jinja2")
+"""Whose versions the report names: what computes, stores and draws."""
+
+
+Reader = Callable[[pa.Table], tuple[Design, ...]]
+"""Evaluations to designs."""
+
+
+@dataclass(frozen=True)
+class VariableFacts:
+    """A variable: how it is shown, and its bounds in its unit."""
+
+    axis: Axis
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class ObjectiveFacts:
+    """An objective: its place, how it is shown, and goal, weight and reference in its unit, None where not given."""
+
+    index: int
+    axis: Axis
+    goal: float | None
+    weight: float
+    reference: float | None
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """All that a report says.
+
+    Attributes:
+        name: The campaign's name.
+        campaign: The campaign as resolved, YAML.
+        setting: What made the figures, as pairs of a heading and a sentence.
+        variables: The variables.
+        objectives: The objectives.
+        constraints: The constraints, a sentence each.
+        runs: The runs, in the campaign's order.
+        front: The combined front, the best by goal attainment first.
+        drawn: Rows of the front that the figures draw.
+        best: The best of each strategy by goal attainment; empty where there are no goals.
+        leanings: The bounds that the front leans on.
+        responses: The step responses; None for a model that has none.
+        notes: Sentences on the state of the store.
+        versions: Versions of libraries by name.
+    """
+
+    name: str
+    campaign: str
+    setting: tuple[tuple[str, str], ...]
+    variables: tuple[VariableFacts, ...]
+    objectives: tuple[ObjectiveFacts, ...]
+    constraints: tuple[str, ...]
+    runs: tuple[RunFacts, ...]
+    front: tuple[Design, ...]
+    drawn: tuple[int, ...]
+    best: tuple[Design, ...]
+    leanings: tuple[Leaning, ...]
+    responses: Responses | None
+    notes: tuple[str, ...]
+    versions: Mapping[str, str]
+
+    @property
+    def strategies(self) -> tuple[str, ...]:
+        """The strategies, in the campaign's order."""
+        return tuple(dict.fromkeys(run.strategy for run in self.runs))
+
+
+def read_report(store: Store) -> ReportData:
+    """Read a store, finished or not.
+
+    Args:
+        store: The store.
+
+    Returns:
+        What its report says.
+
+    Raises:
+        UsageError: There is no store in the folder.
+        FileMistakes: The campaign in it cannot be read.
+        StoreError: A log or a front is damaged or of a later version.
+    """
+    text = store.read_campaign()
+    campaign = parse_campaign(text, "campaign.yaml")
+    problem, runs = build_problem(campaign), plan_runs(campaign)
+    schema = TableSchema.of(problem)
+    logs = {run.name: store.log(run.name, schema).table() for run in runs}
+    strategies = {run.name: run.strategy for run in runs}
+    reference = _reference(campaign)
+    facts = tuple(read_run(run, logs[run.name], problem, schema, reference) for run in runs)
+    table, notes = _front(store, logs, problem, schema)
+    front = designs_of(table, problem, schema, strategies)
+    best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
+    return ReportData(
+        campaign.name,
+        text,
+        _setting(campaign),
+        _variables(problem),
+        _objectives(problem, front, reference),
+        _constraints(problem),
+        facts,
+        front,
+        _drawn(front),
+        best,
+        leanings(front, problem.space),
+        read_responses(problem, front, best),
+        _progress(facts) + notes,
+        {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+    )
+
+
+def _front(
+    store: Store, logs: Mapping[str, pa.Table], problem: Problem, schema: TableSchema
+) -> tuple[pa.Table, tuple[str, ...]]:
+    """The combined front of what is logged, and what to say of the stored one if that is another.
+
+    The stored one is written when a campaign ends. While an extended one runs, it is older than the logs, and
+    would contradict every count beside it.
+    """
+    table = combined_front([run_front(logs[name], problem, schema) for name in sorted(logs)], problem, schema)
+    stored = store.read_front("combined")
+    if stored is None:
+        return table, ("The campaign has not ended: the front below is that of the evaluations logged so far.",)
+    if stored["design_id"].to_pylist() != table["design_id"].to_pylist():
+        return table, (
+            "fronts/combined.parquet is older than the logs: the front below is that of all evaluations so far.",
+        )
+    return table, ()
+
+
+def _progress(runs: Sequence[RunFacts]) -> tuple[str, ...]:
+    waiting = [run.name for run in runs if run.evaluations == 0]
+    clocked = [run.name for run in runs if not run.repeatable]
+    notes = []
+    if waiting:
+        notes.append(f"Not begun yet: {', '.join(waiting)}.")
+    if clocked:
+        notes.append(f"Not repeatable from scratch, since a simulation timed out or crashed: {', '.join(clocked)}.")
+    return tuple(notes)
+
+
+def _best(facts: Sequence[RunFacts], logs: Mapping[str, pa.Table], read: Reader) -> tuple[Design, ...]:
+    """The best of each strategy by goal attainment, in the campaign's order; of its first run that has it."""
+    found: dict[str, tuple[float, RunFacts, int]] = {}
+    for run in facts:
+        if run.best is not None and (run.strategy not in found or run.best[1] < found[run.strategy][0]):
+            found[run.strategy] = (run.best[1], run, run.best[0])
+    return tuple(read(logs[run.name].slice(row, 1))[0] for _, run, row in found.values())
+
+
+def _drawn(front: Sequence[Design]) -> tuple[int, ...]:
+    """All rows, or else those of the table, the extremes, and an even spread of the rest."""
+    if len(front) <= MOST_DRAWN:
+        return tuple(range(len(front)))
+    objectives = np.array([design.objectives for design in front])
+    first = [*range(MOST_ROWS), *(int(row) for row in objectives.argmin(axis=0))]
+    return tuple(sorted(spread(objectives, first, MOST_DRAWN)))
+
+
+def _reference(campaign: Campaign) -> FloatArray | None:
+    """The reference point in the objectives' order; None where there is none to divide by."""
+    point = [campaign.reference_point.get(name, 0.0) for name in campaign.objectives]
+    return np.array(point) if min(point) > 0.0 else None
+
+
+def _variables(problem: Problem) -> tuple[VariableFacts, ...]:
+    return tuple(
+        VariableFacts(axis_of(v.parameter, (v.lower, v.upper)), v.lower, v.upper) for v in problem.space.variables
+    )
+
+
+def _objectives(
+    problem: Problem, front: Sequence[Design], reference: FloatArray | None
+) -> tuple[ObjectiveFacts, ...]:
+    found = []
+    for i, objective in enumerate(problem.objectives):
+        point = None if reference is None else float(reference[i])
+        values = [design.objectives[i] for design in front] or [point or objective.quantity.scale]
+        found.append(ObjectiveFacts(i, axis_of(objective.quantity, values), objective.goal, objective.weight, point))
+    return tuple(found)
+
+
+def _constraints(problem: Problem) -> tuple[str, ...]:
+    sentences = []
+    for constraint in problem.constraints:
+        bounds = {"at least": constraint.minimum, "at most": constraint.maximum}
+        given = {word: bound for word, bound in bounds.items() if bound is not None}
+        axis = axis_of(constraint.quantity, given.values() if any(given.values()) else [constraint.quantity.scale])
+        limits = " and ".join(f"{word} {axis.bound(bound)}" for word, bound in given.items())
+        sentences.append(f"{axis.words} {limits}")
+    return tuple(sentences)
+
+
+def _setting(campaign: Campaign) -> tuple[tuple[str, str], ...]:
+    model = campaign.model
+    if not isinstance(model, DividerConfig):
+        return (("Model", model.kind),)
+    scenario, solver = model.scenario.to_scenario(), model.solver
+    loads = " and ".join(f"{pressure / 1e6:g}" for pressure in scenario.load_pressures)
+    start = "from rest" if scenario.settled else f"from an empty valve, at {scenario.step_time * 1e3:g} ms"
+    return (
+        ("Model", "divider: the adjustable-ratio flow divider"),
+        ("Formulation", model.formulation),
+        ("Parameters", _parameter_words(model)),
+        (
+            "Scenario",
+            f"source flow {scenario.source_flow * 6e4:g} L/min, spool position φ/φ0 = {scenario.spool_position:g}, "
+            f"loads {loads} MPa; load {scenario.step_load} steps to {scenario.step_pressure / 1e6:g} MPa {start}; "
+            f"end at {scenario.end_time:g} s",
+        ),
+        ("Solver", f"{solver.method}, relative tolerance {solver.rtol:g}, at most {solver.max_steps} steps"),
+    )
+
+
+def _parameter_words(model: DividerConfig) -> str:
+    parameters = model.tables().parameters or {}
+    changes = ", ".join(
+        f"{name.replace('_', ' ')} {axis_of(parameters[name], [value]).bound(value)}"
+        for name, value in model.set.items()
+    )
+    return f"{model.parameters}, with {changes}" if changes else model.parameters
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed as a package"

@@ -1,0 +1,131 @@
+"""How numbers are shown to people: the unit on an axis, the digits in a cell."""
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from divideropt.models import Parameter, Quantity
+
+_UNITS: Mapping[str, tuple[tuple[float, str, float], ...]] = MappingProxyType(
+    {
+        "m": ((1e-4, "µm", 1e6), (1.0, "mm", 1e3), (math.inf, "m", 1.0)),
+        "m^2": ((math.inf, "mm²", 1e6),),
+        "m^3": ((1e-2, "mL", 1e6), (math.inf, "L", 1e3)),
+        "m^3/s": ((1e-6, "mL/min", 6e7), (math.inf, "L/min", 6e4)),
+        "m^2/s": ((math.inf, "mm²/s", 1e6),),
+        "m/s": ((1.0, "mm/s", 1e3), (math.inf, "m/s", 1.0)),
+        "Pa": ((1e8, "MPa", 1e-6), (math.inf, "GPa", 1e-9)),
+        "s": ((10.0, "ms", 1e3), (math.inf, "s", 1.0)),
+        "kg": ((1.0, "g", 1e3), (math.inf, "kg", 1.0)),
+        "kg/m^3": ((math.inf, "kg/m³", 1.0),),
+        "rad": ((math.inf, "°", 180.0 / math.pi),),
+    }
+)
+"""The platform's unit to what is shown: (below this magnitude, unit, factor), the first that fits. Others stay."""
+
+DIGITS = 4
+"""Significant digits in tables; a simulated figure means no more."""
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A unit for people.
+
+    Attributes:
+        unit: Its name, "" if none.
+        scale: What to multiply a number in the platform's unit by.
+    """
+
+    unit: str
+    scale: float
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A named column as a figure or a table shows it.
+
+    Attributes:
+        name: Name in files and tables.
+        words: The name in words; a magnitude says so.
+        symbol: Symbol beside the name, "" if it has none.
+        description: What it is, in a line.
+        shown: The unit shown.
+    """
+
+    name: str
+    words: str
+    symbol: str
+    description: str
+    shown: Shown
+
+    @property
+    def label(self) -> str:
+        """Words, symbol and unit: `spool radius r [mm]`."""
+        return " ".join(part for part in (self.words, self.symbol, self.bracket) if part)
+
+    @property
+    def bracket(self) -> str:
+        """The unit in brackets, "" if there is none."""
+        return f"[{self.shown.unit}]" if self.shown.unit else ""
+
+    def scaled(self, value: float) -> float:
+        """Convert from the platform's unit to the one shown."""
+        return value * self.shown.scale
+
+    def text(self, value: float) -> str:
+        """Write a value, given in the platform's unit, without the unit."""
+        return number(self.scaled(value))
+
+    def bound(self, value: float) -> str:
+        """Write a value that somebody gave, a bound or a goal, as short as it was given, with the unit shown."""
+        return f"{self.scaled(value):.6g} {self.shown.unit}".rstrip().replace("-", "−")
+
+
+def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
+    """Choose how a column is shown.
+
+    Args:
+        entry: What the column holds.
+        values: Values it takes, by which the unit is chosen.
+    """
+    symbol = re.sub(r",?\s*\(\d+\.\d+\)", "", entry.symbol).strip()
+    if isinstance(entry, Quantity) and entry.signed and symbol:
+        symbol = f"|{symbol}|"
+    return Axis(entry.name, entry.name.replace("_", " "), symbol, entry.description, shown_as(entry.unit, values))
+
+
+def shown_as(unit: str, values: Iterable[float]) -> Shown:
+    """Choose the unit shown for values given in the platform's unit."""
+    found = np.abs(np.fromiter(values, dtype=np.float64))
+    largest = float(np.max(found[np.isfinite(found)], initial=0.0))
+    for limit, name, scale in _UNITS.get(unit, ()):
+        if largest < limit:
+            return Shown(name, scale)
+    return Shown(unit, 1.0)
+
+
+def number(value: float, digits: int = DIGITS) -> str:
+    """Write a number with so many significant digits, a true minus sign, and no exponent where none is needed."""
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 <= exponent < 6:
+        text = f"{value:.{max(0, digits - 1 - exponent)}f}"
+    else:
+        mantissa = f"{value:.{digits - 1}e}".split("e")[0]
+        text = f"{mantissa}·10{str(exponent).translate(_RAISED)}"
+    return text.replace("-", "−")
+
+
+def rounded(value: float, digits: int = 5) -> float:
+    """Round to significant digits, for numbers that are only drawn."""
+    return float(f"{value:.{digits - 1}e}")

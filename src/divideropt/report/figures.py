@@ -1,0 +1,223 @@
+"""Plotly figures of the front and of the runs. Colours of text and grids are the page's, which knows the theme."""
+
+import html
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import plotly.graph_objects as go
+
+from divideropt.report.data import ObjectiveFacts, ReportData, VariableFacts
+from divideropt.report.display import rounded
+from divideropt.report.front import Design
+from divideropt.report.palette import DASHES, Mark, marks
+
+MOST_PROJECTIONS = 6
+"""Pairs of objectives that are drawn: all of up to four objectives."""
+
+SELECTION = "selected"
+"""Name of the trace that rings the selected design; the page fills it."""
+
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif"
+"""Fonts that are there: none is fetched."""
+
+
+def front_3d(data: ReportData) -> go.Figure:
+    """Draw the front in its first three objectives."""
+    first = data.objectives[:3]
+    figure = go.Figure(layout=layout(height=540, margin={"l": 0, "r": 0, "t": 0, "b": 0}))
+    for name, mark, designs in _by_strategy(data):
+        places = dict(zip("xyz", _columns(designs, first), strict=True))
+        figure.add_scatter3d(
+            **places,
+            name=name,
+            mode="markers",
+            marker={"color": mark.colour, "symbol": mark.shape, "size": 4, "opacity": mark.opacity},
+            customdata=[d.design_id for d in designs],
+            hovertemplate=_hover(dict(zip("xyz", first, strict=True))),
+        )
+    figure.add_scatter3d(**_ring(12), x=[], y=[], z=[])
+    axes = {f"{k}axis": {"title": {"text": label(o)}} for k, o in zip("xyz", first, strict=True)}
+    figure.update_layout(
+        scene=axes
+        | {
+            "aspectmode": "cube",
+            "camera": {"eye": {"x": 1.45, "y": 1.45, "z": 0.75}, "center": {"x": 0, "y": 0, "z": -0.17}},
+        }
+    )
+    return figure
+
+
+def projections(data: ReportData) -> list[tuple[tuple[int, int], go.Figure]]:
+    """Draw the front on pairs of objectives: the pair, and its figure."""
+    pairs = list(combinations(range(len(data.objectives)), 2))[:MOST_PROJECTIONS]
+    return [(pair, _projection(data, data.objectives[pair[0]], data.objectives[pair[1]])) for pair in pairs]
+
+
+def parallel_coordinates(data: ReportData) -> go.Figure:
+    """Draw variables over their bounds and objectives as parallel axes, a line a design of the front."""
+    designs = [data.front[i] for i in data.drawn]
+    dimensions = [
+        {
+            "label": label(facts, line_break=True),
+            "values": [rounded(facts.axis.scaled(d.variables[i])) for d in designs],
+            "range": [facts.axis.scaled(facts.lower), facts.axis.scaled(facts.upper)],
+        }
+        for i, facts in enumerate(data.variables)
+    ]
+    dimensions += [
+        {
+            "label": label(facts, line_break=True),
+            "values": [rounded(facts.axis.scaled(d.objectives[i])) for d in designs],
+        }
+        for i, facts in enumerate(data.objectives)
+    ]
+    order = list(data.strategies)
+    figure = go.Figure(layout=layout(height=440, margin={"l": 60, "r": 60, "t": 64, "b": 24}))
+    figure.add_parcoords(
+        dimensions=dimensions,
+        line={
+            "color": [order.index(d.strategy) for d in designs],
+            "colorscale": _steps([mark.colour for mark in marks(order).values()]),
+            "cmin": 0,
+            "cmax": max(1, len(order) - 1),
+        },
+        labelfont={"size": 12},
+        tickfont={"size": 11},
+        rangefont={"size": 11, "color": "rgba(0,0,0,0)"},  # it would stand on the headings; the ticks say as much
+        unselected={"line": {"opacity": 0.06}},
+    )
+    return figure
+
+
+def hypervolume(data: ReportData) -> go.Figure:
+    """Draw each run's hypervolume against its evaluations."""
+    histories = {run.name: run.hypervolumes for run in data.runs}
+    return _histories(data, histories, "hypervolume", zero=True)
+
+
+def least_objective(data: ReportData) -> go.Figure:
+    """Draw each run's least value of the only objective against its evaluations."""
+    facts = data.objectives[0]
+    histories = {run.name: [facts.axis.scaled(value) for value in run.least] for run in data.runs}
+    return _histories(data, histories, f"least {label(facts)}", zero=False)
+
+
+def label(facts: ObjectiveFacts | VariableFacts, *, line_break: bool = False) -> str:
+    """Label an axis, escaped: plotly reads tags, and links among them, in any text."""
+    axis = facts.axis
+    parts = [plain(axis.words), plain(" ".join(p for p in (axis.symbol, axis.bracket) if p))]
+    return ("<br>" if line_break else " ").join(part for part in parts if part)
+
+
+def plain(text: str) -> str:
+    """Escape a text for plotly."""
+    return html.escape(text, quote=False)
+
+
+def layout(height: int, margin: dict[str, int]) -> dict[str, Any]:
+    """Begin a layout: transparent, so that the page's colours show."""
+    return {
+        "template": "none",
+        "height": height,
+        "margin": margin,
+        "paper_bgcolor": "rgba(0,0,0,0)",
+        "plot_bgcolor": "rgba(0,0,0,0)",
+        "font": {"family": FONT, "size": 12},
+        "hovermode": "closest",
+        "showlegend": False,
+        "uirevision": "kept",
+    }
+
+
+def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts) -> go.Figure:
+    figure = go.Figure(layout=layout(height=340, margin={"l": 62, "r": 12, "t": 12, "b": 52}))
+    for name, mark, designs in _by_strategy(data):
+        x, y = _columns(designs, (first, second))
+        figure.add_scatter(
+            x=x,
+            y=y,
+            name=name,
+            mode="markers",
+            marker={"color": mark.colour, "symbol": mark.shape, "size": 6, "opacity": mark.opacity},
+            customdata=[d.design_id for d in designs],
+            hovertemplate=_hover({"x": first, "y": second}),
+        )
+    figure.add_scatter(**_ring(13), x=[], y=[])
+    figure.update_xaxes(title_text=label(first), rangemode="normal")
+    figure.update_yaxes(title_text=label(second))
+    figure.update_layout(shapes=list(_goal_lines(first, second)))
+    return figure
+
+
+def _goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[str, Any]]:
+    style = {"type": "line", "line": {"dash": "dot", "width": 1.4}}
+    if first.goal is not None:
+        at = first.axis.scaled(first.goal)
+        yield style | {"x0": at, "x1": at, "y0": 0, "y1": 1, "yref": "paper"}
+    if second.goal is not None:
+        at = second.axis.scaled(second.goal)
+        yield style | {"y0": at, "y1": at, "x0": 0, "x1": 1, "xref": "paper"}
+
+
+def _histories(data: ReportData, histories: Mapping[str, Sequence[float]], title: str, *, zero: bool) -> go.Figure:
+    figure = go.Figure(layout=layout(height=380, margin={"l": 64, "r": 16, "t": 12, "b": 52}))
+    style = marks(data.strategies)
+    seeds: dict[str, int] = dict.fromkeys(data.strategies, 0)
+    for run in data.runs:
+        dash = DASHES[seeds[run.strategy] % len(DASHES)]
+        seeds[run.strategy] += 1
+        figure.add_scatter(
+            x=list(run.marks),
+            y=[None if value != value else rounded(value) for value in histories[run.name]],  # noqa: PLR0124 (NaN)
+            name=plain(run.name),
+            mode="lines",
+            line={"color": style[run.strategy].colour, "dash": dash, "width": 2},
+            hovertemplate=f"{plain(run.name)}<br>%{{x}} evaluations<br>%{{y:.4~g}}<extra></extra>",
+        )
+    figure.update_xaxes(title_text="evaluations", rangemode="tozero")
+    figure.update_yaxes(title_text=title, rangemode="tozero" if zero else "normal")
+    figure.update_layout(
+        showlegend=True, legend={"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"}
+    )
+    return figure
+
+
+def _by_strategy(data: ReportData) -> Iterator[tuple[str, Mark, list[Design]]]:
+    """The strategies with designs to draw, in order."""
+    drawn = [data.front[i] for i in data.drawn]
+    for name, mark in marks(data.strategies).items():
+        designs = [design for design in drawn if design.strategy == name]
+        if designs:
+            yield plain(name), mark, designs
+
+
+def _columns(designs: Sequence[Design], objectives: Sequence[ObjectiveFacts]) -> list[list[float]]:
+    """Values of some objectives, as shown."""
+    return [
+        [rounded(facts.axis.scaled(design.objectives[facts.index])) for design in designs] for facts in objectives
+    ]
+
+
+def _hover(axes: Mapping[str, ObjectiveFacts]) -> str:
+    lines = [
+        f"{plain(facts.axis.words)} %{{{key}:.4~g}} {plain(facts.axis.shown.unit)}" for key, facts in axes.items()
+    ]
+    return "<br>".join(["<b>%{customdata}</b>", *lines]) + "<extra></extra>"
+
+
+def _ring(size: float) -> dict[str, Any]:
+    """Begin the trace that rings the selected design."""
+    return {
+        "name": SELECTION,
+        "mode": "markers",
+        "marker": {"symbol": "circle-open", "size": size, "line": {"width": 2.5}},
+        "hoverinfo": "skip",
+    }
+
+
+def _steps(colours: Sequence[str]) -> list[list[Any]]:
+    """Make a colour scale of plain steps, a colour each strategy."""
+    if len(colours) == 1:
+        return [[0.0, colours[0]], [1.0, colours[0]]]
+    return [[i / (len(colours) - 1), colour] for i, colour in enumerate(colours)]

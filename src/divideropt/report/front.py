@@ -1,0 +1,122 @@
+"""The designs of a report, and the bounds that the front leans on."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from divideropt.models.base import FloatArray
+from divideropt.problem import AGGREGATES, DesignSpace, Problem
+from divideropt.store import TableSchema
+
+NEAR_BOUND = 1e-3
+"""Share of a variable's range within which a design lies on the bound."""
+
+LEAST_SHARE = 0.05
+"""Share of the front from which on it leans on a bound; fewer designs are the front's edge."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """One design.
+
+    Attributes:
+        design_id: `<run>/<index>`.
+        run: Its run.
+        strategy: The run's strategy.
+        variables: In the variables' units.
+        objectives: What is minimised, in the quantities' units; of signed quantities the magnitude.
+        attainment: max λ_i of (3.24), or None where an objective has no goal.
+        met: Whether each objective's goal is met, None where it has none.
+    """
+
+    design_id: str
+    run: str
+    strategy: str
+    variables: tuple[float, ...]
+    objectives: tuple[float, ...]
+    attainment: float | None
+    met: tuple[bool | None, ...]
+
+
+@dataclass(frozen=True)
+class Leaning:
+    """A bound that the front leans on.
+
+    Attributes:
+        variable: Index of the variable.
+        side: `lower` or `upper`.
+        bound: Its value, in the variable's unit.
+        share: Part of the front's designs that lie on it.
+    """
+
+    variable: int
+    side: str
+    bound: float
+    share: float
+
+
+def designs_of(
+    table: pa.Table, problem: Problem, schema: TableSchema, strategies: Mapping[str, str]
+) -> tuple[Design, ...]:
+    """Read the designs of a front.
+
+    Args:
+        table: Feasible evaluations.
+        problem: What was optimised.
+        schema: The store's columns.
+        strategies: The strategy of each run.
+
+    Returns:
+        The best by goal attainment first; in the table's order where there are no goals.
+    """
+    evaluations = schema.evaluations(table)
+    objectives = problem.tell(evaluations).F
+    attainment = _attainment(objectives, problem)
+    order = range(len(objectives)) if attainment is None else np.argsort(attainment, kind="stable").tolist()
+    ids, runs = table["design_id"].to_pylist(), table["run"].to_pylist()
+    return tuple(
+        Design(
+            ids[i],
+            runs[i],
+            strategies.get(runs[i], runs[i]),
+            tuple(evaluations.designs[i].tolist()),
+            tuple(objectives[i].tolist()),
+            None if attainment is None else float(attainment[i]),
+            _met(objectives[i], problem),
+        )
+        for i in order
+    )
+
+
+def leanings(designs: Sequence[Design], space: DesignSpace) -> tuple[Leaning, ...]:
+    """List the bounds that the front leans on, the one with the most designs first."""
+    if not designs:
+        return ()
+    places = np.array([design.variables for design in designs])
+    near = NEAR_BOUND * (space.upper - space.lower)
+    sides = {
+        "lower": (space.lower, places - space.lower <= near),
+        "upper": (space.upper, space.upper - places <= near),
+    }
+    found = [
+        Leaning(i, side, float(bounds[i]), float(on[:, i].mean()))
+        for side, (bounds, on) in sides.items()
+        for i in range(len(space))
+        if on[:, i].mean() >= LEAST_SHARE
+    ]
+    return tuple(sorted(found, key=lambda leaning: (-leaning.share, leaning.variable, leaning.side)))
+
+
+def _attainment(objectives: FloatArray, problem: Problem) -> FloatArray | None:
+    if any(objective.goal is None for objective in problem.objectives):
+        return None
+    return AGGREGATES["goal_attainment"](objectives, problem.objectives)
+
+
+def _met(row: FloatArray, problem: Problem) -> tuple[bool | None, ...]:
+    return tuple(
+        None if objective.goal is None else bool(value <= objective.goal)
+        for value, objective in zip(row, problem.objectives, strict=True)
+    )

@@ -1,0 +1,129 @@
+"""The report's page: frozen data to one HTML file."""
+
+from pathlib import Path
+from typing import Any
+
+from divideropt.report.data import MOST_ROWS, ReportData, read_report
+from divideropt.report.display import number, rounded
+from divideropt.report.document import drawn, render, save
+from divideropt.report.figures import (
+    front_3d,
+    hypervolume,
+    least_objective,
+    parallel_coordinates,
+    projections,
+)
+from divideropt.report.front import Design
+from divideropt.report.palette import marks
+from divideropt.report.responses import Responses
+from divideropt.report.step_figure import step_figure, step_window
+from divideropt.report.tables import best_table, front_table, outcome_table, runs_table
+from divideropt.store import Store
+
+
+def write_report(store: Store, out: Path | None = None) -> Path:
+    """Write the report of a store, finished or not.
+
+    Args:
+        store: The store.
+        out: Where to; `report.html` in the store if not given.
+
+    Returns:
+        Where it is.
+
+    Raises:
+        UsageError: There is no store in the folder.
+        FileMistakes: The campaign in it cannot be read.
+        StoreError: The store is damaged or of a later version.
+        DiskError: The disk refused.
+    """
+    text = render_report(read_report(store))
+    return store.write_report(text) if out is None else save(out, text)
+
+
+def render_report(data: ReportData) -> str:
+    """Make the page; the same data give the same text."""
+    figures = _figures(data)
+    return render(
+        "report.html.j2",
+        {"figures": figures, **_selection(data)},
+        data=data,
+        figures={figure["id"]: figure for figure in figures},
+        projections=[figure for figure in figures if figure["id"].startswith("projection")],
+        marks=marks(data.strategies),
+        counts={name: sum(d.strategy == name for d in data.front) for name in data.strategies},
+        tables={
+            "best": best_table(data),
+            "front": front_table(data, MOST_ROWS),
+            "runs": runs_table(data),
+            "outcomes": outcome_table(data),
+        },
+        number=number,
+        most_rows=MOST_ROWS,
+    )
+
+
+def _figures(data: ReportData) -> list[dict[str, Any]]:
+    found = []
+    if data.front:
+        found += _front_figures(data)
+    if any(run.hypervolumes for run in data.runs):
+        found.append(drawn("hypervolume", hypervolume(data)))
+    if len(data.objectives) == 1:
+        found.append(drawn("least", least_objective(data)))
+    if data.front and data.responses is not None:
+        found.append(drawn("response", step_figure(data.responses)))
+    return found
+
+
+def _front_figures(data: ReportData) -> list[dict[str, Any]]:
+    found = []
+    if len(data.objectives) >= 3:
+        found.append(drawn("front", front_3d(data), webgl=True, axes=[0, 1, 2]))
+    for pair, figure in projections(data):
+        names = " and ".join(data.objectives[i].axis.words for i in pair)
+        found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
+    found.append(drawn("parallel", parallel_coordinates(data), webgl=True))
+    return found
+
+
+def _selection(data: ReportData) -> dict[str, Any]:
+    """What the page needs to show a design that is selected."""
+    responses = data.responses
+    shown = [data.front[i] for i in data.drawn] + list(data.best)
+    return {
+        "fields": [_field(facts.axis.label, None) for facts in data.variables]
+        + [
+            _field(facts.axis.label, None if facts.goal is None else facts.axis.bound(facts.goal))
+            for facts in data.objectives
+        ],
+        "objectives": len(data.objectives),
+        "designs": {design.design_id: _values(design, data) for design in shown} if data.front else {},
+        "responses": {} if responses is None else _curves(responses),
+        "selected": _first(data),
+    }
+
+
+def _curves(responses: Responses) -> dict[str, Any]:
+    return {r.name: {"t": r.times, "q": r.flows, "window": step_window(r, responses.sets)} for r in responses.designs}
+
+
+def _field(label: str, goal: str | None) -> dict[str, Any]:
+    return {"label": label, "goal": goal}
+
+
+def _values(design: Design, data: ReportData) -> dict[str, Any]:
+    axes = [facts.axis for facts in data.variables] + [facts.axis for facts in data.objectives]
+    values = (*design.variables, *design.objectives)
+    return {
+        "v": [rounded(axis.scaled(value)) for axis, value in zip(axes, values, strict=True)],
+        "met": design.met,
+        "attainment": None if design.attainment is None else rounded(design.attainment),
+    }
+
+
+def _first(data: ReportData) -> str | None:
+    """The design to begin with: the best whose response is there."""
+    known = {response.name for response in data.responses.designs} if data.responses else set()
+    ids = [design.design_id for design in data.front]
+    return next((name for name in ids if name in known), ids[0] if ids else None)

@@ -1,0 +1,117 @@
+"""What each run did: its budget, how its simulations ended, how its hypervolume grew."""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from divideropt.analysis import best_attainment, hypervolume_history
+from divideropt.campaign.plan import Run
+from divideropt.models import Outcome
+from divideropt.models.base import FloatArray
+from divideropt.problem import Problem, Told
+from divideropt.store import TableSchema
+
+MARKS = 60
+"""Points of a run's history: half of them early, where most is gained."""
+
+COSTLY_MARKS = 12
+"""The same from five objectives on, where one hypervolume may take seconds."""
+
+UNREPEATABLE = (Outcome.TIMED_OUT, Outcome.CRASHED)
+"""Outcomes a clock or a machine makes: a run that has one may come out otherwise from scratch."""
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """One run.
+
+    Attributes:
+        name: Its name.
+        strategy: Its strategy.
+        seed: Its seed.
+        evaluations: Evaluations logged.
+        budget: Most evaluations it asks for.
+        feasible: Designs whose outcome is ok and which keep every constraint.
+        outcomes: How many simulations ended how; only those that occurred.
+        examples: A sentence of the first simulation that ended so.
+        marks: Numbers of evaluations at which the histories are taken.
+        hypervolumes: Hypervolume up to each mark; empty without a reference point.
+        least: Least value of the first objective up to each mark, NaN before the first feasible design.
+        best: Row of the log of the design with the least max λ_i, and that value; None where there is none.
+    """
+
+    name: str
+    strategy: str
+    seed: int
+    evaluations: int
+    budget: int
+    feasible: int
+    outcomes: Mapping[str, int]
+    examples: Mapping[str, str]
+    marks: tuple[int, ...]
+    hypervolumes: tuple[float, ...]
+    least: tuple[float, ...]
+    best: tuple[int, float] | None
+
+    @property
+    def repeatable(self) -> bool:
+        """Whether the run comes out the same from scratch."""
+        return not any(outcome in self.outcomes for outcome in UNREPEATABLE)
+
+    @property
+    def hypervolume(self) -> float | None:
+        """Hypervolume at the end, None without a reference point."""
+        return self.hypervolumes[-1] if self.hypervolumes else None
+
+
+def read_run(
+    run: Run, log: pa.Table, problem: Problem, schema: TableSchema, reference: FloatArray | None
+) -> RunFacts:
+    """Sum up a run.
+
+    Args:
+        run: As planned.
+        log: Its evaluations so far.
+        problem: What is optimised.
+        schema: The log's columns.
+        reference: The reference point, shape (k,), or None.
+    """
+    told = problem.tell(schema.evaluations(log))
+    outcomes, texts = log["outcome"].to_pylist(), log["outcome_text"].to_pylist()
+    examples: dict[str, str] = {}
+    for outcome, text in zip(outcomes, texts, strict=True):
+        examples.setdefault(outcome, text)
+    marks = _marks(len(outcomes), len(problem.objectives))
+    volumes = () if reference is None else tuple(hypervolume_history(told, reference, marks))
+    return RunFacts(
+        run.name,
+        run.strategy,
+        run.seed,
+        len(outcomes),
+        run.options.budget,
+        int(told.feasible.sum()),
+        dict(sorted(Counter(outcomes).items(), key=lambda item: list(Outcome).index(Outcome(item[0])))),
+        examples,
+        marks,
+        volumes,
+        _least(told, marks),
+        best_attainment(told, problem),
+    )
+
+
+def _marks(evaluations: int, objectives: int) -> tuple[int, ...]:
+    if evaluations == 0:
+        return ()
+    count = (MARKS if objectives < 5 else COSTLY_MARKS) // 2
+    early, even = np.geomspace(1, evaluations, count), np.linspace(1, evaluations, count)
+    return tuple(np.unique(np.concatenate([early, even]).round().astype(int)).tolist())
+
+
+def _least(told: Told, marks: tuple[int, ...]) -> tuple[float, ...]:
+    """Running minimum of the first objective over the feasible designs."""
+    values = np.where(told.feasible, told.F[:, 0], np.inf)
+    running = np.minimum.accumulate(values) if len(values) else values
+    return tuple(float(running[m - 1]) if np.isfinite(running[m - 1]) else float("nan") for m in marks)

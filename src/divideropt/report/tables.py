@@ -1,0 +1,121 @@
+"""The report's tables, as headings and cells of text."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from divideropt.models import Outcome
+from divideropt.report.data import ReportData
+from divideropt.report.display import number
+from divideropt.report.front import Design
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A column: its words, symbol and unit, what it is, and whether it holds numbers."""
+
+    words: str
+    detail: str = ""
+    title: str = ""
+    numeric: bool = True
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell: its text, what to sort by, and whether a goal is met there, None where there is none."""
+
+    text: str
+    order: str = ""
+    met: bool | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row: the design it is about, "" if none, and its cells."""
+
+    design_id: str
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table."""
+
+    headings: tuple[Heading, ...]
+    rows: tuple[Row, ...]
+
+
+def front_table(data: ReportData, most: int) -> Table:
+    """List the designs of the front, the first so many."""
+    return _designs(data, data.front[:most], Heading("design", numeric=False))
+
+
+def best_table(data: ReportData) -> Table:
+    """List the best design of each strategy."""
+    table = _designs(data, data.best, Heading("design", numeric=False))
+    rows = tuple(
+        Row(row.design_id, (Cell(design.strategy, design.strategy), *row.cells))
+        for row, design in zip(table.rows, data.best, strict=True)
+    )
+    return Table((Heading("strategy", numeric=False), *table.headings), rows)
+
+
+def runs_table(data: ReportData) -> Table:
+    """List the runs: budget, evaluations, what of them came to the front, hypervolume."""
+    headings = [Heading("run", numeric=False), Heading("seed"), Heading("evaluations"), Heading("budget")]
+    headings += [Heading("feasible"), Heading("on the front", title="designs of the combined front")]
+    measured = any(run.hypervolumes for run in data.runs)
+    if measured:
+        headings.append(Heading("hypervolume", title="share of the reference box that the run dominates"))
+    rows = []
+    for run in data.runs:
+        share = sum(design.run == run.name for design in data.front)
+        counts = (run.seed, run.evaluations, run.budget, run.feasible, share)
+        cells = [Cell(run.name, run.name), *(Cell(str(count), str(count)) for count in counts)]
+        if measured:
+            cells.append(Cell("–" if run.hypervolume is None else f"{run.hypervolume:.4f}"))
+        rows.append(Row("", tuple(cells)))
+    return Table(tuple(headings), tuple(rows))
+
+
+def outcome_table(data: ReportData) -> Table:
+    """Count how the simulations of each run ended, with a sentence of the first that ended so."""
+    outcomes = [o for o in Outcome if any(o in run.outcomes for run in data.runs)]
+    headings = (
+        Heading("outcome", numeric=False),
+        *(Heading(run.name) for run in data.runs),
+        Heading("for example", numeric=False),
+    )
+    rows = []
+    for outcome in outcomes:
+        example = next((run.examples[outcome] for run in data.runs if outcome in run.examples), "")
+        counts = (str(run.outcomes.get(outcome, 0)) for run in data.runs)
+        rows.append(Row("", (Cell(outcome), *(Cell(count) for count in counts), Cell(example))))
+    return Table(headings, tuple(rows))
+
+
+def _designs(data: ReportData, designs: Sequence[Design], first: Heading) -> Table:
+    goals = bool(designs) and designs[0].attainment is not None
+    axes = [facts.axis for facts in data.objectives] + [facts.axis for facts in data.variables]
+    headings = [first]
+    if goals:
+        headings.append(Heading("max λ", title="goal attainment (3.24); below 0 every goal is met"))
+    headings += [
+        Heading(
+            axis.words,
+            " ".join(part for part in (axis.symbol, axis.bracket) if part),
+            axis.description,
+        )
+        for axis in axes
+    ]
+    return Table(tuple(headings), tuple(_row(data, design) for design in designs))
+
+
+def _row(data: ReportData, design: Design) -> Row:
+    cells = [Cell(design.design_id, design.design_id)]
+    if design.attainment is not None:
+        cells.append(Cell(number(design.attainment), repr(design.attainment)))
+    objectives = zip(data.objectives, design.objectives, design.met, strict=True)
+    cells += [Cell(facts.axis.text(value), repr(value), met) for facts, value, met in objectives]
+    variables = zip(data.variables, design.variables, strict=True)
+    cells += [Cell(facts.axis.text(value), repr(value)) for facts, value in variables]
+    return Row(design.design_id, tuple(cells))

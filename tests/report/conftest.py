@@ -1,0 +1,102 @@
+"""Small stores, made once: of the divider, and of an analytic model of any number of objectives."""
+
+import io
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.runner import Runner
+from divideropt.errors import NoFeasibleDesignError
+from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
+from divideropt.report.data import ReportData, read_report
+from divideropt.store import Store
+
+DIVIDER = """
+name: small
+model: {kind: divider, set: {radial_clearance: 3 um}}
+variables:
+  spool_radius: [6 mm, 16 mm]
+  groove_width: [0.6 mm, 2 mm]
+  total_pressure_drop: [2 MPa, 10 MPa]
+  fixed_drop_ratio: [0.3, 0.99]
+  centred_opening: [0.1, 0.9]
+objectives:
+  steady_state_error: {goal: 0.5 %, weight: 3}
+  dynamic_error: {goal: 0.5 mL, weight: 3}
+  source_pressure: {goal: 18 MPa}
+constraints: {source_pressure: {max: 30 MPa}, stop_clearance: {min: 0 mm}}
+reference_point: {steady_state_error: 10 %, dynamic_error: 10 mL, source_pressure: 30 MPa}
+strategies:
+  nsga2: {population: 12, generations: 3, seeds: [1]}
+  complex: {evaluations: 40, seeds: [1]}
+parallel: {backend: sequential}
+"""
+
+
+class Spheres:
+    """Squared distances to corners of the unit cube; the front of two is the segment between them."""
+
+    def __init__(self, objectives: int = 2) -> None:
+        self._count = objectives
+        self.parameters = {f"p{i}": Parameter(f"p{i}", "", "", "", 0.5, Domain(0.0, 1.0)) for i in range(3)}
+        self.quantities = {f"q{i}": Quantity(f"q{i}", "", "", "", 1.0) for i in range(objectives)}
+
+    def evaluate(self, designs):
+        corners = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(self._count)])
+        distances = ((designs[:, None, :] - corners) ** 2).sum(axis=2)
+        return distances, [Verdict(Outcome.OK)] * len(designs)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def spheres_module() -> Iterator[None]:
+    """Make the model importable by the name a campaign gives."""
+    module = ModuleType("report_spheres")
+    module.Spheres = Spheres
+    sys.modules["report_spheres"] = module
+    yield
+    del sys.modules["report_spheres"]
+
+
+def run_campaign(text: str, folder: Path) -> Store:
+    runner = Runner(parse_campaign(text), folder, 1, io.StringIO())
+    try:
+        return runner.run().store
+    except NoFeasibleDesignError:
+        return Store(folder)
+
+
+@pytest.fixture(scope="session")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    """A finished campaign of the divider; not to be changed."""
+    return run_campaign(DIVIDER, tmp_path_factory.mktemp("divider") / "small")
+
+
+@pytest.fixture(scope="session")
+def data(store: Store) -> ReportData:
+    return read_report(store)
+
+
+@pytest.fixture
+def spheres(tmp_path: Path) -> Callable[..., Store]:
+    """`spheres(objectives, more)`: a finished campaign of the analytic model."""
+
+    def make(objectives: int, more: str = "", goal: str = "{}") -> Store:
+        names = [f"q{i}" for i in range(objectives)]
+        text = f"""
+name: spheres
+model: {{kind: "report_spheres:Spheres", options: {{objectives: {objectives}}}}}
+variables: {{p0: [0, 1], p1: [0, 1], p2: [0, 0.5]}}
+objectives: {{{", ".join(f"{name}: {goal}" for name in names)}}}
+reference_point: {{{", ".join(f"{name}: 3" for name in names)}}}
+strategies: {{nsga2: {{population: 8, generations: 3, seeds: [1, 2]}}}}
+parallel: {{backend: sequential}}
+{more}
+"""
+        return run_campaign(text, tmp_path / "spheres")
+
+    return make

@@ -1,0 +1,303 @@
+"""The page in a browser: what is drawn, what a selection changes, and that nothing leaves the page."""
+
+import base64
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from divideropt.campaign.load import default_campaign
+from divideropt.campaign.simulate import simulate
+from divideropt.report import Curve, ResponseCurves, response_page, write_response
+from divideropt.report.data import ReportData
+from divideropt.report.page import render_report
+
+HOSTILE = "</script><script>window.hacked=1</script>"
+LINK = '<a href="https://example.org/">here</a>'
+
+PATIENCE = 90_000
+"""How long a page may take [ms]: without a graphics card, on a busy machine, WebGL alone takes ten seconds."""
+
+NO_WEBGL = """const old = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return String(kind).includes("webgl") ? null : old.call(this, kind, ...more);
+};"""
+"""Makes a browser that lacks it, and is faster than one that computes it."""
+
+COUNT_COLOURS = """async (png) => {
+    const image = new Image();
+    image.src = "data:image/png;base64," + png;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
+    return new Set(pixels).size;
+}"""
+"""How many colours a screenshot has; the browser knows PNG."""
+
+
+@dataclass
+class Opened:
+    """A page, and what it did that it should not."""
+
+    page: Page
+    requests: list[str] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
+
+    def count(self, selector: str) -> int:
+        return self.page.locator(selector).count()
+
+    def lines(self) -> list[str]:
+        """Outlines of the response's lines as drawn."""
+        return self.page.eval_on_selector_all(
+            "#response .scatterlayer path.js-line", "paths => paths.map(p => p.getAttribute('d'))"
+        )
+
+    def title(self) -> str:
+        return self.page.locator("#selected-title").inner_text()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
+        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
+    if path is None:
+        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
+    with sync_playwright() as playwright:
+        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = playwright.chromium.launch(executable_path=path, args=args)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
+    """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
+    folder = tmp_path_factory.mktemp("pages")
+
+    def open_page(text: str, script: str = "") -> Opened:
+        path = folder / f"{len(list(folder.iterdir()))}.html"
+        path.write_text(text, encoding="utf-8")
+        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
+        found.page.set_default_timeout(PATIENCE)
+        found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
+        found.page.on("pageerror", lambda error: found.errors.append(str(error)))
+
+        def hold(route: Any) -> None:
+            if route.request.url == path.as_uri():
+                route.continue_()
+            else:
+                found.requests.append(route.request.url)
+                route.abort()
+
+        found.page.route("**/*", hold)
+        if script:
+            found.page.add_init_script(script)
+        found.page.goto(path.as_uri())
+        found.page.wait_for_selector("html[data-drawn]")
+        return found
+
+    return open_page
+
+
+@pytest.fixture(scope="module")
+def report(opened: Callable[..., Opened], data: ReportData) -> Opened:
+    return opened(render_report(data))
+
+
+def _quiet(found: Opened) -> None:
+    assert found.requests == []
+    assert found.errors == []
+    links = found.page.evaluate(
+        "[...document.querySelectorAll('[href], [src]')].map(e => e.getAttribute('href') ?? e.getAttribute('src'))"
+    )
+    assert [link for link in links if link and not link.startswith("#")] == []
+
+
+def test_nothing_leaves_the_page(report):
+    report.page.wait_for_timeout(200)
+    _quiet(report)
+
+
+def test_no_button_shares(report):
+    titles = report.page.evaluate(
+        "[...document.querySelectorAll('.modebar-btn')].map(b => b.dataset.title + b.dataset.attr + b.outerHTML)"
+    )
+    assert titles, "the other buttons are there"
+    for word in ("share", "cloud", "chart-studio", "plot.ly", "plotly.com"):
+        assert not [t for t in titles if word in t.lower()]
+
+
+def test_each_projection_has_a_point_a_design(report, data):
+    for pair in ("0-1", "0-2", "1-2"):
+        traces = report.page.eval_on_selector_all(
+            f"#projection-{pair} .scatterlayer .trace", "ts => ts.map(t => t.querySelectorAll('path.point').length)"
+        )
+        assert sum(traces[:-1]) == len(data.front)
+        assert traces[-1] == 1, "the ring around the selected design"
+
+
+def test_the_front_is_drawn_in_three_dimensions(report):
+    picture = base64.b64encode(report.page.locator("#front").screenshot()).decode()
+    assert report.page.evaluate(COUNT_COLOURS, picture) > 100
+
+
+def test_the_parallel_coordinates_are_drawn(report, data):
+    assert report.count("#parallel .parcoords .axis-title") == len(data.variables) + len(data.objectives)
+    picture = base64.b64encode(report.page.locator("#parallel").screenshot()).decode()
+    assert report.page.evaluate(COUNT_COLOURS, picture) > 100
+
+
+def test_each_run_has_a_line_of_hypervolume(report, data):
+    assert report.count("#hypervolume .scatterlayer path.js-line") == len(data.runs)
+
+
+def test_the_response_is_drawn_beside_the_three_sets(report):
+    assert report.page.locator("#response").is_visible()
+    assert len(report.lines()) == 2 + 2 * 3
+    assert report.count("#response .legend .traces") == 4
+
+
+def test_the_table_has_a_row_a_design(report, data):
+    assert report.count("#front-table tbody tr") == len(data.front)
+
+
+def test_another_row_changes_the_response(report, data):
+    before = report.lines()
+    report.page.locator("#front-table tbody tr").nth(3).click()
+    report.page.wait_for_function(f"document.querySelector('#selected-title').textContent.includes('{_id(data, 3)}')")
+    report.page.wait_for_timeout(200)
+    assert len(report.lines()) == len(before)
+    assert report.lines() != before
+    assert report.page.locator("#choice").input_value() == _id(data, 3)
+    assert report.page.locator("tr[aria-current=true]").first.get_attribute("data-id") == _id(data, 3)
+
+
+def test_the_list_and_the_keyboard_select_too(report, data):
+    report.page.select_option("#choice", _id(data, 0))
+    assert _id(data, 0) in report.title()
+    report.page.locator("#front-table tbody tr").first.focus()
+    report.page.keyboard.press("ArrowDown")
+    report.page.keyboard.press("Enter")
+    assert _id(data, 1) in report.title()
+
+
+def test_a_click_on_a_point_selects_its_design(report, data):
+    report.page.select_option("#choice", _id(data, 0))
+    report.page.wait_for_timeout(300)
+    chosen = report.page.evaluate("""() => {
+        const points = [...document.querySelectorAll('#projection-0-1 .trace:first-child path.point')];
+        const far = points.reduce((a, b) => a.getBoundingClientRect().y < b.getBoundingClientRect().y ? a : b);
+        far.scrollIntoView({block: 'center', behavior: 'instant'});
+        const box = far.getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2];
+    }""")
+    before = report.title()
+    report.page.mouse.move(chosen[0] - 2, chosen[1])
+    report.page.mouse.move(*chosen)
+    report.page.wait_for_timeout(200)
+    report.page.mouse.click(*chosen)
+    report.page.wait_for_function(f"document.querySelector('#selected-title').textContent !== '{before}'")
+
+
+def test_a_heading_sorts_by_its_column(report):
+    column = "#front-table tbody tr td:nth-child(5)"
+    heading = report.page.locator("#front-table th").nth(4)
+    for order, direction in (("ascending", 1), ("descending", -1)):
+        heading.locator("button").press("Enter")
+        assert heading.get_attribute("aria-sort") == order
+        values = [float(v) for v in report.page.eval_on_selector_all(column, "cs => cs.map(c => c.dataset.order)")]
+        assert values == sorted(values, reverse=direction < 0)
+
+
+def test_the_figures_follow_the_theme(report):
+    def colours() -> list[str]:
+        report.page.wait_for_timeout(500)
+        return report.page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
+
+    light = colours()
+    report.page.emulate_media(color_scheme="dark")
+    dark = colours()
+    report.page.emulate_media(color_scheme="light")
+    assert light
+    assert dark
+    assert set(light).isdisjoint(dark)
+    assert colours() == light
+
+
+@pytest.fixture(scope="module")
+def flat(opened: Callable[..., Opened], data: ReportData) -> Opened:
+    """A report in a browser without WebGL, which holds one response only."""
+    few = replace(data.responses, designs=data.responses.designs[:1])
+    return opened(render_report(replace(data, responses=few)), NO_WEBGL)
+
+
+def test_a_design_without_a_response_says_so(flat, data):
+    kept = data.responses.designs[0].name
+    name = next(d.design_id for d in data.front if d.design_id != kept)
+    flat.page.locator(f'#front-table tr[data-id="{name}"]').click()
+    flat.page.locator("#unstored").wait_for(state="visible")
+    assert len([line for line in flat.lines() if line]) == 2 * 3
+    assert flat.page.locator("#choice option:checked").inner_text() == f"{name} (no response in the page)"
+    _quiet(flat)
+
+
+def test_without_webgl_a_sentence_stands_for_the_picture(flat, data):
+    assert not flat.page.locator("#front").is_visible()
+    assert flat.page.locator("#the-front .missing").is_visible()
+    assert flat.page.locator("#coordinates .missing").is_visible()
+    assert flat.count("#projection-0-1 path.point") == len(data.front) + 1
+    _quiet(flat)
+
+
+def test_hostile_text_stays_text(opened, data):
+    designs = tuple(replace(d, design_id=HOSTILE + d.design_id, strategy=LINK) for d in data.front)
+    runs = tuple(replace(run, name=HOSTILE + LINK, strategy=LINK) for run in data.runs)
+    objectives = tuple(replace(o, axis=replace(o.axis, words=HOSTILE + LINK, symbol=LINK)) for o in data.objectives)
+    found = opened(
+        render_report(
+            replace(
+                data,
+                name=HOSTILE,
+                campaign=HOSTILE,
+                front=designs,
+                runs=runs,
+                objectives=objectives,
+                notes=(HOSTILE,),
+            )
+        ),
+        NO_WEBGL,
+    )
+    assert found.page.evaluate("window.hacked") is None
+    assert found.page.locator("h1").inner_text() == HOSTILE
+    assert found.page.locator("#campaign").inner_text() == HOSTILE
+    assert found.page.title().startswith(HOSTILE)
+    _quiet(found)
+
+
+def test_an_injected_script_does_not_run(opened):
+    text = response_page("x", ResponseCurves([0.0, 1.0], (Curve("x", "m", [0.0, 1.0]),)))
+    found = opened(text.replace("</main>", "<script>window.hacked=1</script></main>"))
+    assert found.page.evaluate("window.hacked") is None
+    assert found.requests == []
+
+
+def test_a_simulated_response_is_three_plots(opened, tmp_path: Path):
+    path = write_response(simulate(default_campaign(), []), tmp_path / "x.html")
+    found = opened(path.read_text("utf-8"))
+    assert found.count("#curves .cartesianlayer > .subplot") == 3
+    assert found.count("#curves .scatterlayer path.js-line") == 2 + 7 + 1
+    assert found.page.locator("h1").inner_text() == "Response: ok"
+    _quiet(found)
+
+
+def _id(data: ReportData, row: int) -> str:
+    return data.front[row].design_id
