@@ -25,7 +25,7 @@ def main(store: Path) -> None:
         page.goto(report.as_uri())
         page.wait_for_function("document.querySelectorAll('.js-plotly-plot canvas').length > 0")
         page.wait_for_timeout(5000)  # WebGL without a graphics card takes its time
-        page.locator("#front").screenshot(path=PICTURE)
+        page.locator("#the-front").screenshot(path=PICTURE)
         browser.close()
     print(PICTURE)
 

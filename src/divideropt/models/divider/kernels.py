@@ -249,11 +249,11 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def signed_root(drop, law):  # type: ignore[no-untyped-def]
-    """Return the signed square root of a pressure drop [Pa] as the orifices have it, elementwise."""
-    out = np.empty_like(drop)
-    for i in range(drop.size):
-        out.flat[i] = _root(drop.flat[i], law)[0]
+def signed_root(drops, law):  # type: ignore[no-untyped-def]
+    """Return the signed square root of pressure drops [Pa] as the orifices have it, shape (n,) as given."""
+    out = np.empty_like(drops)
+    for i in range(drops.size):
+        out[i] = _root(drops[i], law)[0]
     return out
 
 

@@ -44,7 +44,8 @@ class Phase:
         """
         d = self.design[0]
         pressures = np.maximum(states[..., 7:9], 0.0)
-        return np.asarray(signed_root(pressures, d.orifice_law) * np.array([d.load_1, d.load_2]))
+        roots = signed_root(np.ascontiguousarray(pressures).ravel(), d.orifice_law)  # one shape, compiled once
+        return np.asarray(roots.reshape(pressures.shape) * np.array([d.load_1, d.load_2]))
 
 
 @dataclass(frozen=True)
