@@ -47,9 +47,8 @@ def objectives() -> None:
     print(f"{len(theirs)} designs; the author's solver completed {solved.sum()}, of which we complete "
           f"{(ours.outcome[solved] != 'not_completed').sum()}")  # fmt: skip
     print(f"outcomes where his solver did not: {ours.outcome[~solved].value_counts().to_dict()}")
-    print(
-        f"at the stop by his figures and by ours: {((ours.outcome == 'at_stop') == (theirs.at_stop == 1))[solved].all()}"
-    )
+    agree = ((ours.outcome == "at_stop") == (theirs.at_stop == 1))[solved].all()
+    print(f"the same designs at the stop: {agree}")
     for name, mine, his in (
         ("steady_state_error", ours.steady_state_error, theirs.sserr.abs()),
         ("flow_difference", ours.flow_difference, theirs.sserr),
