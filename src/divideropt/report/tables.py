@@ -78,18 +78,21 @@ def runs_table(data: ReportData) -> Table:
 
 
 def outcome_table(data: ReportData) -> Table:
-    """Count how the simulations of each run ended, with a sentence of the first that ended so."""
+    """Count how the simulations of each strategy ended, with a sentence of the first that ended so."""
     outcomes = [o for o in Outcome if any(o in run.outcomes for run in data.runs)]
     headings = (
         Heading("outcome", numeric=False),
-        *(Heading(run.name) for run in data.runs),
+        *(Heading(strategy) for strategy in data.strategies),
         Heading("for example", numeric=False),
     )
     rows = []
     for outcome in outcomes:
         example = next((run.examples[outcome] for run in data.runs if outcome in run.examples), "")
-        counts = (str(run.outcomes.get(outcome, 0)) for run in data.runs)
-        rows.append(Row("", (Cell(outcome), *(Cell(count) for count in counts), Cell(example))))
+        counts = (
+            sum(run.outcomes.get(outcome, 0) for run in data.runs if run.strategy == strategy)
+            for strategy in data.strategies
+        )
+        rows.append(Row("", (Cell(outcome), *(Cell(str(count)) for count in counts), Cell(example))))
     return Table(headings, tuple(rows))
 
 
