@@ -1,6 +1,8 @@
 """The command line: parse, call, exit code. Data goes to standard output, words to standard error."""
 
 import os
+import shlex
+import signal
 import sys
 import traceback
 from pathlib import Path
@@ -23,12 +25,14 @@ _FILE = click.Path(path_type=Path)
 
 def main() -> None:
     """Run the command and leave with its exit code."""
+    signal.signal(signal.SIGTERM, _terminated)
     try:
         code = commands.main(standalone_mode=False) or 0
     except click.ClickException as error:
         error.show()
         code = 2
-    except click.Abort:
+    except (click.Abort, KeyboardInterrupt):
+        _say("divideropt: stopped by SIGINT; nothing that was logged is lost")
         code = 130
     except FileMistakes as error:
         _say(str(error))  # file:line:column, which editors know
@@ -36,11 +40,6 @@ def main() -> None:
     except DivideroptError as error:
         _say(f"divideropt: {error}")
         code = error.exit_code
-    except KeyboardInterrupt:
-        code = 130
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0
     except Exception:
         traceback.print_exc()
         _say("divideropt: this is a bug in divideropt; the lines above say where. Nothing that was logged is lost.")
@@ -73,7 +72,8 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     from divideropt.store import Store
 
     folder = store or Path("results") / asked.name
-    runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr)
+    again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
+    runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr, again)
     try:
         size = runner.run(fresh=fresh).front
     except NoFeasibleDesignError:
@@ -124,7 +124,7 @@ def report(store: Path, out: Path | None) -> None:
 def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
     """Evaluate every design of a CSV file: columns are parameters by name, SI."""
     settings = _load(campaign)
-    _check_suffix(out, (".csv", ".parquet"))
+    _check_out(out, (".csv", ".parquet"))
     from divideropt.campaign.designs import evaluate_designs, read_designs
     from divideropt.campaign.plan import build_model
 
@@ -142,7 +142,7 @@ def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
 def simulate(campaign: Path | None, settings: tuple[str, ...], out: Path | None) -> None:
     """Simulate one response: a table, or a picture (.html)."""
     asked = _load(campaign)
-    _check_suffix(out, (".csv", ".parquet", ".html"))
+    _check_out(out, (".csv", ".parquet", ".html"))
     from divideropt.campaign.simulate import simulate as simulate_one
 
     response = simulate_one(asked, settings)
@@ -184,14 +184,20 @@ def _load(path: Path | None) -> "Campaign":
     return default_campaign() if path is None else load_campaign(path)
 
 
-def _check_suffix(out: Path | None, known: tuple[str, ...]) -> None:
+def _check_out(out: Path | None, known: tuple[str, ...]) -> None:
     if out is not None and out.suffix not in known:
         raise UsageError(f"--out {out}: the name must end in {' or '.join(known)}")
+    if out is not None and not out.parent.is_dir():
+        raise UsageError(f"--out {out}: there is no folder {out.parent}; make it first")
 
 
 def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
     if out is None:
-        table.to_csv(sys.stdout, index=False)
+        try:
+            table.to_csv(sys.stdout, index=False)
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return
     from divideropt.store.files import publish
 
@@ -199,6 +205,11 @@ def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
         return table.to_parquet(path, index=False) if out.suffix == ".parquet" else table.to_csv(path, index=False)
 
     publish(out, write)
+
+
+def _terminated(number: int, frame: object) -> None:
+    _say("divideropt: stopped by SIGTERM; nothing that was logged is lost")
+    sys.exit(128 + number)
 
 
 def _count(number: int | None) -> str:

@@ -8,7 +8,7 @@ import pytest
 
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
-from divideropt.errors import NoFeasibleDesignError, StoreError
+from divideropt.errors import NoFeasibleDesignError, StoreError, UsageError
 from divideropt.store import RunLog
 
 TEXT = """
@@ -123,6 +123,30 @@ def test_another_campaign_is_refused_with_the_differing_keys(whole):
         run(whole, other)
     for key in ("variables.x2", "nsga2.population", "complex.evaluations: 60", "nsga2.seeds: [2]", "--fresh"):
         assert key in str(caught.value)
+
+
+def test_another_order_of_variables_is_another_campaign_and_leaves_the_store_alone(whole):
+    before = (whole / "campaign.yaml").read_bytes()
+    with pytest.raises(StoreError, match="variables: in the order x1, x2, x3 in the store, x2, x1, x3"):
+        run(whole, TEXT.replace("x1: [0, 1], x2: [0, 1]", "x2: [0, 1], x1: [0, 1]"))
+    assert (whole / "campaign.yaml").read_bytes() == before
+
+
+@pytest.mark.parametrize("content", [b"name: [", b"\xff\xfe", b"name: toy\n"])
+def test_a_damaged_campaign_in_a_store_is_the_stores_fault(whole, tmp_path, content):
+    folder = tmp_path / "store"
+    run(folder)
+    (folder / "campaign.yaml").write_bytes(content)
+    with pytest.raises(StoreError, match=r"campaign\.yaml"):
+        run(folder)
+
+
+def test_a_folder_that_is_no_store_is_not_moved(tmp_path):
+    (tmp_path / "thesis.txt").write_text("mine")
+    with pytest.raises(UsageError, match="not a store"):
+        run(tmp_path, fresh=True)
+    assert (tmp_path / "thesis.txt").read_text() == "mine"
+    assert [p.name for p in tmp_path.parent.glob("*.before-*")] == []
 
 
 def test_a_log_that_was_not_asked_for_is_refused(whole, tmp_path):

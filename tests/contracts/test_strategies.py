@@ -1,11 +1,14 @@
 """What every strategy promises: see `divideropt.strategies.base`."""
 
+import dataclasses
 import random
 
 import numpy as np
 import pytest
 
 from divideropt.analysis import hypervolume
+from divideropt.models import Domain, Parameter
+from divideropt.problem import DesignSpace, Told, Variable
 from divideropt.strategies import NSGA2, STRATEGIES, ComplexMethod, Genetic, GoalAttainment
 from toy_model import toy_problem
 
@@ -107,3 +110,31 @@ def test_it_beats_random_sampling(pair):
         assert attained(found) < attained(blind)
     else:
         assert volume(found) > volume(blind)
+
+
+@pytest.mark.parametrize("strategy", [ComplexMethod(evaluations=300), GoalAttainment(directions=3, evaluations=700)])
+def test_it_goes_on_with_as_many_variables_as_the_divider_has(strategy):
+    def parameter(i):
+        return Parameter(f"x{i}", "", "x", "", 0.5, Domain(0.0, 1.0))
+
+    space = DesignSpace(tuple(Variable(parameter(i), 0.0, 1.0) for i in range(28)))
+    problem = dataclasses.replace(toy_problem(), space=space)
+    spent = 0
+
+    def evaluate(designs):
+        nonlocal spent
+        spent += len(designs)
+        F = np.column_stack([(designs**2).sum(axis=1), ((designs - 1) ** 2).sum(axis=1)])
+        return Told(F, np.zeros((len(designs), problem.constraint_count)))
+
+    strategy.run(problem, evaluate, seed=1)
+    assert spent > 0.9 * strategy.evaluations
+
+
+def test_options_that_do_not_suit_the_problem_are_named_with_a_remedy():
+    assert ComplexMethod(points=5).objection(5, 3)[0] == "points"
+    assert ComplexMethod(points=10, evaluations=9).objection(5, 3)[0] == "evaluations"
+    assert GoalAttainment(directions=3).objection(5, 4)[0] == "directions"
+    assert "at least 50" in GoalAttainment(evaluations=49).objection(5, 3)[1]
+    for strategy in (pair[0] for pair in SMALL.values()):
+        assert strategy.objection(3, 2) is None

@@ -298,7 +298,7 @@ def test_a_signal_stops_within_seconds_and_names_the_line_that_goes_on(tmp_path,
     send(process.pid, number)
     assert process.wait(timeout=60) == code
     assert time.monotonic() - asked < 5.0
-    assert "The same command goes on" in words(tmp_path)
+    assert words(tmp_path).splitlines()[-1].strip() == "divideropt run small.yaml"
     assert call("run", "small.yaml", folder=tmp_path).returncode == 0
     assert_same_fronts(tmp_path, uninterrupted)
 

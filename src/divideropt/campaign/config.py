@@ -108,9 +108,16 @@ def _constraint(quantity: Quantity, raw: object) -> ConstraintConfig:
     return ConstraintConfig.model_validate(raw, context=measure_of(quantity))
 
 
+def _reference_value(quantity: Quantity, raw: object) -> float:
+    value = measure_of(quantity).read(raw)
+    if value <= 0.0:
+        raise ValueError(f"{show(raw)} is not above 0, from where the hypervolume is measured; give a worse value")
+    return value
+
+
 def _reference(value: Any, info: ValidationInfo) -> dict[str, float]:
     """Read the reference point: nothing, or a value for every objective."""
-    point = by_name("quantities", lambda quantity, raw: measure_of(quantity).read(raw))(value, info)
+    point = by_name("quantities", _reference_value)(value, info)
     objectives = info.data.get("objectives")
     if not point or not objectives:
         return point

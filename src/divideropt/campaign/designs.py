@@ -11,6 +11,7 @@ import pandas as pd
 from divideropt.errors import FileMistakes, Mistake, UsageError
 from divideropt.models import Model, Parameter
 from divideropt.models.base import FloatArray
+from divideropt.problem import simulate
 
 IDENTITY = "design_id"
 """A column that is passed through as it is."""
@@ -51,11 +52,13 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
             reader = csv.reader(file)
             header = next(reader, [])
             _check_header(path, header, known)
-            rows = [(reader.line_num, row) for row in reader if row]
+            rows = [(reader.line_num, row or [""]) for row in reader]
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}; name a readable CSV file of designs") from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise UsageError(f"{path}: not a CSV file in UTF-8 ({error}); save it as one") from error
+    while rows and rows[-1][1] == [""]:
+        rows.pop()  # blank lines at the end are no designs
     mistakes: list[Mistake] = []
     values = [_read_row(line, row, header, known, mistakes) for line, row in rows]
     if mistakes:
@@ -81,10 +84,7 @@ def evaluate_designs(designs: Designs, model: Model, fixed: dict[str, float]) ->
         A row a design, in the designs' order: `design_id` if given, the columns given, every quantity, `outcome`,
         `outcome_text`.
     """
-    full = np.tile([fixed[name] for name in model.parameters], (len(designs.values), 1))
-    places = {name: i for i, name in enumerate(model.parameters)}
-    full[:, [places[name] for name in designs.given]] = designs.values
-    quantities, verdicts = model.evaluate(full)
+    quantities, verdicts = simulate(model, fixed, designs.given, designs.values)
     table = pd.DataFrame(designs.values, columns=list(designs.given))
     if designs.identities is not None:
         table.insert(0, IDENTITY, list(designs.identities))

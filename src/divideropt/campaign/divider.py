@@ -82,6 +82,7 @@ class ScenarioConfig(Section):
     @classmethod
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say which times go with which start."""
+        yield from _accumulated_by_the_end(raw)
         step = raw.get("step") or {}
         at = step.get("at") if isinstance(step, Mapping) else None
         if raw.get("start", "settled") == "settled":
@@ -151,6 +152,25 @@ class DividerConfig(Section):
 
 def _end_if(data: Mapping[str, Any], start: str) -> float | None:
     return _DEFAULT_END if data.get("start") == start else None
+
+
+def _accumulated_by_the_end(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
+    step = raw.get("step") or {}
+    cold = raw.get("start") == "cold"
+    at = step.get("at") if cold and isinstance(step, Mapping) else None
+    end = raw.get("end" if cold else "horizon")
+    try:
+        begin = 0.0 if at is None else Measure("s").read(at)
+        last = _DEFAULT_END if end is None else Measure("s").read(end)
+        needed = Measure("s").read(raw.get("accumulation_time", "0.2 s"))
+    except ValueError:  # has its own mistake
+        return
+    if begin < last < (begin + needed) * (1 - 1e-9):
+        where = "accumulation_time" if "accumulation_time" in raw else "end" if cold else "horizon"
+        sentence = (
+            f"the simulation ends {last - begin:g} s after the step, before the accumulation time of {needed:g} s"
+        )
+        yield mistake((where,), f"{sentence}; simulate longer, or accumulate for less")
 
 
 def _end_after_step(end: object, at: object) -> Iterator[InitErrorDetails]:

@@ -39,6 +39,10 @@ def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
     before, after = _as_written(stored), _as_written(asked)
     for section in _FIXED:
         yield from _compare(section, before[section], after[section])
+    for section in ("variables", "objectives", "constraints"):
+        old, new = list(before[section]), list(after[section])
+        if old != new and sorted(old) == sorted(new):
+            yield f"{section}: in the order {', '.join(old)} in the store, {', '.join(new)} in the campaign"
     for name, plan in before["strategies"].items():
         if name in after["strategies"]:
             yield from _compare_plans(f"strategies.{name}", plan, after["strategies"][name])

@@ -1,6 +1,6 @@
 """A campaign's file to a `Campaign`, with every mistake in it at once."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,8 @@ from divideropt.campaign.divider import DIVIDER_TABLES
 from divideropt.campaign.fields import Tables
 from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import Document, KeyPath, read_document, read_text
-from divideropt.errors import FileMistakes, Mistake, UsageError
+from divideropt.errors import FileMistakes, Mistake, StoreError, UsageError
+from divideropt.store import Store
 
 
 def load_campaign(path: Path | str) -> Campaign:
@@ -37,6 +38,19 @@ def parse_campaign(text: str, path: str = "campaign") -> Campaign:
     return _campaign(read_text(text, path))
 
 
+def stored_campaign(store: Store) -> Campaign:
+    """Read the campaign of a store, as resolved when it was made.
+
+    Raises:
+        UsageError: There is no store.
+        StoreError: Its campaign is damaged.
+    """
+    try:
+        return parse_campaign(store.read_campaign(), str(store.campaign_path))
+    except FileMistakes as error:
+        raise StoreError(f"{error}\nThis store's campaign is damaged; restore it, or start anew (--fresh)") from error
+
+
 def default_campaign() -> Campaign:
     """Return the campaign that ships with the package, for commands that need none."""
     return parse_campaign(default_text(), "divider.yaml")
@@ -56,6 +70,7 @@ def _campaign(document: Document) -> Campaign:
         found += _placed(document, ("model", "kind"), str(error))
     try:
         campaign = Campaign.model_validate(document.data, context=tables)
+        found += _objections(document, campaign)
     except ValidationError as error:
         for detail in error.errors(include_url=False):
             found += _reported(document, detail)
@@ -75,6 +90,15 @@ def _tables(document: Document) -> Tables:
         return Tables()  # nothing is imported on the word of a file that is refused anyway
     made = load_plugin(model["kind"], options)
     return Tables(made.parameters, made.quantities)
+
+
+def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
+    """Say which strategies do not suit a problem of this size."""
+    for plan in campaign.strategies:
+        objection = plan.options.objection(len(campaign.variables), len(campaign.objectives))
+        if objection is not None:
+            option, sentence = objection
+            yield from _placed(document, ("strategies", plan.name, option), sentence)
 
 
 def _reported(document: Document, detail: ErrorDetails) -> list[Mistake]:

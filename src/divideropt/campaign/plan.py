@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.models import Model
+from divideropt.models.base import FloatArray
 from divideropt.models.divider import Divider
 from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
 from divideropt.strategies import Strategy
@@ -57,3 +60,10 @@ def build_problem(campaign: Campaign) -> Problem:
         objectives=tuple(Objective(quantities[name], o.goal, o.weight) for name, o in campaign.objectives.items()),
         constraints=tuple(Constraint(quantities[name], c.min, c.max) for name, c in campaign.constraints.items()),
     )
+
+
+def reference_of(campaign: Campaign) -> FloatArray | None:
+    """The reference point of the hypervolume in the objectives' order, shape (k,), or None."""
+    if not campaign.reference_point:
+        return None
+    return np.array([campaign.reference_point[name] for name in campaign.objectives])

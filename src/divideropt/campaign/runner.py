@@ -3,7 +3,7 @@
 import os
 import signal
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
@@ -18,7 +18,7 @@ from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_extends
-from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import Run, build_problem, plan_runs
 from divideropt.campaign.progress import Display
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, work, work_as_process
@@ -26,22 +26,22 @@ from divideropt.errors import DivideroptError, NoFeasibleDesignError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
 from divideropt.store import Store, TableSchema
+from divideropt.store.files import disk_errors
 
 
 class InterruptedRunError(DivideroptError):
     """A signal stopped the campaign; what was computed is on disk."""
 
-    def __init__(self, number: int, folder: Path) -> None:
-        """Word it for a signal and a store."""
+    def __init__(self, number: int, folder: Path, again: str) -> None:
+        """Word it for a signal, a store, and the command that goes on."""
         self.exit_code = 128 + number
         super().__init__(
-            f"stopped by {signal.Signals(number).name}; everything computed is in {folder}. "
-            "The same command goes on from there."
+            f"stopped by {signal.Signals(number).name}; everything computed is in {folder}. To go on:\n  {again}"
         )
 
 
 class WorkerLostError(DivideroptError):
-    """A worker process died."""
+    """A worker process died; the exit code is that of a bug, since nothing of the user's made it."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,9 @@ class Outcomes:
 class Runner:
     """Runs one campaign in one store."""
 
-    def __init__(self, campaign: Campaign, folder: Path, workers: int, words: TextIO) -> None:
+    def __init__(
+        self, campaign: Campaign, folder: Path, workers: int, words: TextIO, again: str = "run the campaign again"
+    ) -> None:
         """Prepare; nothing is read or made yet.
 
         Args:
@@ -68,8 +70,11 @@ class Runner:
             folder: The store's.
             workers: Processes at a time.
             words: Where progress is shown.
+            again: The command that goes on if this one is stopped.
         """
         self._campaign = campaign
+        self._text = dump_campaign(campaign)
+        self._again = again
         self._store = Store(folder)
         self._workers = 1 if campaign.parallel.backend == "sequential" else workers
         self._words = words
@@ -92,28 +97,23 @@ class Runner:
             WorkerLostError: A worker process died.
             NoFeasibleDesignError: No design is feasible.
         """
-        if fresh:
-            with self._store.writing():
-                aside = self._store.move_aside()
+        aside = self._store.move_aside() if fresh else None
+        if aside is not None:
             print(f"the old store is now {aside}", file=self._words)
-        with self._store.writing():
+        with self._store.writing(), self._signals():
             self._take_campaign()
             problem = build_problem(self._campaign)
             self._warm_up(problem)
-            with self._signals():
-                endings = self._drive(problem)
-            self._raise_first(endings)
+            self._raise_first(self._drive(problem))
             return self._write_fronts(problem)
 
     def _take_campaign(self) -> None:
         """Check that the store is this campaign's, and write down what it has become."""
-        text = dump_campaign(self._campaign)
         if self._store.exists:
-            stored = self._store.read_campaign()
-            if stored == text:
+            if self._store.read_campaign() == self._text:
                 return
-            check_extends(parse_campaign(stored, str(self._store.campaign_path)), self._campaign, self._store.folder)
-        self._store.write_campaign(text)
+            check_extends(stored_campaign(self._store), self._campaign, self._store.folder)
+        self._store.write_campaign(self._text)
 
     def _warm_up(self, problem: Problem) -> None:
         """Evaluate the middle of the box once, so that compiled code is in the cache before workers want it."""
@@ -123,28 +123,33 @@ class Runner:
     def _drive(self, problem: Problem) -> list[Ending]:
         runs = plan_runs(self._campaign)
         folder = self._store.status_folder
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / STOP_FILE).unlink(missing_ok=True)
-        with Display(folder, [run.name for run in runs], self._words):
-            if self._workers == 1:
-                return [self._work_here(run, problem, problem.simulate) for run in runs]
-            with parallel_config(backend="loky", inner_max_num_threads=1):
-                if len(runs) < self._workers:
-                    return self._split_batches(runs, problem)
-                return self._one_process_a_run(runs)
-
-    def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
-        tasks = (delayed(work_as_process)(self._campaign, self._store.folder, run) for run in runs)
-        pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
+        with disk_errors(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+            for old in (folder / STOP_FILE, *folder.glob("*.json")):
+                old.unlink(missing_ok=True)
         try:
-            return list(pool(tasks))
+            with Display(folder, [run.name for run in runs], self._words):
+                return self._drive_with_workers(runs, problem)
         except TerminatedWorkerError as error:
             if self._signal is not None:  # which reached a worker before it could ignore it
-                raise InterruptedRunError(self._signal, self._store.folder) from error
+                raise self._interrupted(self._signal) from error
             raise WorkerLostError(
-                "a worker process was killed, perhaps for want of memory. What was logged is intact: "
-                "run the same command again."
+                f"a worker process was killed, perhaps for want of memory. What was logged is intact. To go on:\n"
+                f"  {self._again}"
             ) from error
+
+    def _drive_with_workers(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
+        if self._workers == 1:
+            return [self._work_here(run, problem, problem.simulate) for run in runs]
+        with parallel_config(backend="loky", inner_max_num_threads=1):
+            if len(runs) < self._workers:
+                return self._split_batches(runs, problem)
+            return self._one_process_a_run(runs)
+
+    def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
+        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in runs)
+        pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
+        return list(pool(tasks))
 
     def _split_batches(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
         """Do the runs one after the other, each batch shared out among the workers."""
@@ -154,7 +159,7 @@ class Runner:
                 if len(designs) < self._workers:
                     return problem.simulate(designs)
                 shares = np.array_split(designs, self._workers)
-                parts = pool(delayed(simulate_share)(self._campaign, share) for share in shares)
+                parts = pool(delayed(simulate_share)(self._text, share) for share in shares)
                 return Evaluations(
                     designs,
                     np.concatenate([part.quantities for part in parts]),
@@ -175,7 +180,8 @@ class Runner:
             if self._signal is not None:
                 os._exit(128 + number)
             self._signal = number
-            stop.touch()
+            with suppress(OSError):  # a disk that refuses will be heard of soon enough
+                stop.touch()
 
         old = {number: signal.signal(number, hear) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
@@ -189,7 +195,10 @@ class Runner:
             if ending.error is not None:
                 raise ending.error
         if self._signal is not None:
-            raise InterruptedRunError(self._signal, self._store.folder)
+            raise self._interrupted(self._signal)
+
+    def _interrupted(self, number: int) -> InterruptedRunError:
+        return InterruptedRunError(number, self._store.folder, self._again)
 
     def _write_fronts(self, problem: Problem) -> Outcomes:
         schema = TableSchema.of(problem)

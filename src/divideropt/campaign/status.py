@@ -4,9 +4,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from divideropt.analysis import best_attainment, hypervolume_history
-from divideropt.campaign.load import parse_campaign
-from divideropt.campaign.plan import build_problem, plan_runs
-from divideropt.campaign.worker import reference_of
+from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.store import Store, TableSchema
 
 
@@ -57,7 +56,7 @@ def read_status(store: Store) -> StoreStatus:
         UsageError: There is no store.
         StoreError: It is damaged.
     """
-    campaign = parse_campaign(store.read_campaign(), str(store.campaign_path))
+    campaign = stored_campaign(store)
     problem = build_problem(campaign)
     schema, reference = TableSchema.of(problem), reference_of(campaign)
     runs = []

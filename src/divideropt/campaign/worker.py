@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-
 from divideropt.campaign.config import Campaign
-from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate, StoppedError, execute
-from divideropt.campaign.plan import Run, build_problem
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.plan import Run, build_problem, reference_of
 from divideropt.campaign.progress import Reporter
 from divideropt.errors import DivideroptError
 from divideropt.models.base import FloatArray
@@ -43,17 +41,17 @@ class Ending:
     error: DivideroptError | None = None
 
 
-def work_as_process(campaign: Campaign, folder: Path, run: Run) -> Ending:
-    """Do one run in a worker process of its own."""
+def work_as_process(text: str, folder: Path, run: Run) -> Ending:
+    """Do one run of a campaign, given as resolved text, in a worker process of its own."""
     leave_signals_to_parent()
-    problem = _problem(campaign)
+    campaign, problem = _prepared(text)
     return work(campaign, problem, folder, run, problem.simulate)
 
 
-def simulate_share(campaign: Campaign, designs: FloatArray) -> Evaluations:
-    """Evaluate a share of a batch in a worker process."""
+def simulate_share(text: str, designs: FloatArray) -> Evaluations:
+    """Evaluate a share of a batch in a worker process, for a campaign given as resolved text."""
     leave_signals_to_parent()
-    return _problem(campaign).simulate(designs)
+    return _prepared(text)[1].simulate(designs)
 
 
 def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate: Simulate) -> Ending:
@@ -88,13 +86,6 @@ def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate:
     return Ending(run.name)
 
 
-def reference_of(campaign: Campaign) -> FloatArray | None:
-    """The reference point of the hypervolume in the objectives' order, shape (k,), or None."""
-    if not campaign.reference_point:
-        return None
-    return np.array([campaign.reference_point[name] for name in campaign.objectives])
-
-
 def leave_signals_to_parent() -> None:
     """Let the parent decide on a signal to all, and end with it: loky's workers would outlive it by minutes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -114,15 +105,11 @@ def _watch_parent() -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-_problems: dict[str, Problem] = {}
-
-
-def _problem(campaign: Campaign) -> Problem:
-    """Make the campaign's problem once a process."""
-    key = dump_campaign(campaign)
-    if key not in _problems:
-        _problems[key] = build_problem(campaign)
-    return _problems[key]
+@cache
+def _prepared(text: str) -> tuple[Campaign, Problem]:
+    """Read a campaign and make its problem, once a process."""
+    campaign = parse_campaign(text)
+    return campaign, build_problem(campaign)
 
 
 def _throttled(question: Callable[[], bool], seconds: float = 0.1) -> Callable[[], bool]:

@@ -10,9 +10,10 @@ from enum import StrEnum
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from divideropt.ode.base import FloatArray
+
+__all__ = ["Domain", "FloatArray", "Model", "Outcome", "Parameter", "Quantity", "Verdict"]
 
 
 @dataclass(frozen=True)

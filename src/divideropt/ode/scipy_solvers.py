@@ -1,5 +1,6 @@
 """SciPy's stiff solvers behind the call of `divideropt.ode.base`."""
 
+import warnings
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -56,9 +57,17 @@ def integrate(
         atol=np.array(settings.atol),
         jac=jacobian,
     )
+    with warnings.catch_warnings(action="ignore"):  # LSODA warns of what its status says
+        return _advance(solver, span, start, settings.max_steps, event)
+
+
+def _advance(
+    solver: OdeSolver, span: tuple[float, float], start: FloatArray, max_steps: int, event: Event | None
+) -> Trajectory:
+    """Step to the end, the event, or the end of the budget."""
     edges, values = [span[0]], []
-    status, message = SolverStatus.STEP_BUDGET, f"{settings.max_steps} steps did not suffice"
-    for _ in range(settings.max_steps):
+    status, message = SolverStatus.STEP_BUDGET, f"{max_steps} steps did not suffice"
+    for _ in range(max_steps):
         failure = _step(solver)
         if failure is not None:
             status, message = SolverStatus.FAILED, failure

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray, Model, Verdict
 from divideropt.problem.criteria import Constraint, Objective
+from divideropt.problem.simulation import simulate
 from divideropt.problem.space import DesignSpace
 
 FAILED_OBJECTIVE = 1e4
@@ -103,10 +104,7 @@ class Problem:
         Returns:
             What came out.
         """
-        full = np.tile([self.fixed[name] for name in self.model.parameters], (len(designs), 1))
-        columns = {name: i for i, name in enumerate(self.model.parameters)}
-        full[:, [columns[name] for name in self.space.names]] = designs
-        quantities, verdicts = self.model.evaluate(full)
+        quantities, verdicts = simulate(self.model, self.fixed, self.space.names, designs)
         return Evaluations(designs, quantities, verdicts)
 
     def tell(self, evaluations: Evaluations) -> Told:

@@ -11,8 +11,8 @@ import pyarrow as pa
 from divideropt.analysis import combined_front, run_front
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
-from divideropt.campaign.load import parse_campaign
-from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.report.display import Axis, axis_of
@@ -113,12 +113,12 @@ def read_report(store: Store) -> ReportData:
         StoreError: A log or a front is damaged or of a later version.
     """
     text = store.read_campaign()
-    campaign = parse_campaign(text, "campaign.yaml")
+    campaign = stored_campaign(store)
     problem, runs = build_problem(campaign), plan_runs(campaign)
     schema = TableSchema.of(problem)
     logs = {run.name: store.log(run.name, schema).table() for run in runs}
     strategies = {run.name: run.strategy for run in runs}
-    reference = _reference(campaign)
+    reference = reference_of(campaign)
     facts = tuple(read_run(run, logs[run.name], problem, schema, reference) for run in runs)
     table, notes = _front(store, logs, problem, schema)
     front = designs_of(table, problem, schema, strategies)
@@ -187,12 +187,6 @@ def _drawn(front: Sequence[Design]) -> tuple[int, ...]:
     objectives = np.array([design.objectives for design in front])
     first = [*range(MOST_ROWS), *(int(row) for row in objectives.argmin(axis=0))]
     return tuple(sorted(spread(objectives, first, MOST_DRAWN)))
-
-
-def _reference(campaign: Campaign) -> FloatArray | None:
-    """The reference point in the objectives' order; None where there is none to divide by."""
-    point = [campaign.reference_point.get(name, 0.0) for name in campaign.objectives]
-    return np.array(point) if min(point) > 0.0 else None
 
 
 def _variables(problem: Problem) -> tuple[VariableFacts, ...]:

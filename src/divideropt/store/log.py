@@ -19,7 +19,10 @@ FLUSH_ROWS = 500
 FLUSH_SHARE = 0.1
 
 FLUSH_SECONDS = 2.0
-"""How long an evaluation waits at most for its part, or this share of the time the run has taken."""
+"""How long an evaluation waits for its part, or a share of the time the run has taken, but never longer than"""
+
+LONGEST_WAIT = 60.0
+"""this [s], which is what a kill may cost."""
 
 
 class RunLog:
@@ -66,7 +69,7 @@ class RunLog:
         self._batches += 1
         waiting = self._rows - self._flushed
         now = time.monotonic()
-        patience = max(FLUSH_SECONDS, FLUSH_SHARE * (now - self._opened))
+        patience = min(max(FLUSH_SECONDS, FLUSH_SHARE * (now - self._opened)), LONGEST_WAIT)
         if waiting >= max(FLUSH_ROWS, FLUSH_SHARE * self._flushed) or now - self._last_flush >= patience:
             self.flush()
 
@@ -95,12 +98,12 @@ class RunLog:
         return sorted(self._folder.glob("part-*.parquet"))
 
     def _read(self, path: Path) -> pa.Table:
-        """Read a part that must follow the rows already seen."""
+        """Read a part and check that it is whole and this campaign's."""
         try:
             table = pq.ParquetFile(path, page_checksum_verification=True).read()
         except (pa.ArrowException, OSError) as error:
             raise StoreError(f"{path}: damaged ({error}); restore it, or start anew (--fresh)") from error
         check_version(table.schema, path)
-        if not table.schema.equals(self._schema.arrow):
+        if table.num_rows == 0 or not table.schema.equals(self._schema.arrow):
             raise StoreError(f"{path}: its columns are not this campaign's; start anew (--fresh)")
         return table

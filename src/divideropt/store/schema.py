@@ -91,7 +91,7 @@ def check_version(schema: pa.Schema, path: object) -> None:
         StoreError: The table has no version, or a later one.
     """
     stated = (schema.metadata or {}).get(_VERSION_KEY)
-    if stated is None:
+    if stated is None or not stated.isdigit():
         raise StoreError(f"{path}: not a table of this program (no schema version in it); move it out of the store")
     if int(stated) > SCHEMA_VERSION:
         raise StoreError(

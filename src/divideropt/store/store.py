@@ -50,10 +50,16 @@ class Store:
 
         Raises:
             UsageError: There is no store in the folder.
+            StoreError: It cannot be read.
         """
         if not self.exists:
             raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
-        return self.campaign_path.read_text(encoding="utf-8")
+        try:
+            return self.campaign_path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise StoreError(
+                f"{self.campaign_path}: damaged ({error}); restore it, or start anew (--fresh)"
+            ) from error
 
     def write_campaign(self, text: str) -> None:
         """Replace the campaign as resolved.
@@ -118,17 +124,23 @@ class Store:
             yield
 
     def move_aside(self) -> Path | None:
-        """Rename an existing store out of the way, and say where it went."""
-        if not self.folder.exists():
+        """Rename an existing store out of the way, and say where it went; None where there is none.
+
+        Raises:
+            UsageError: The folder holds something else, which is not ours to move.
+        """
+        if not self.exists:
+            if self.folder.is_dir() and any(self.folder.iterdir()):
+                raise UsageError(
+                    f"{self.folder}: not a store (no campaign.yaml), and not empty; name another --store"
+                )
             return None
+        whole = self.folder.resolve()
         stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
-        aside = self.folder.with_name(f"{self.folder.name}.before-{stamp}")
-        count = 1
-        while aside.exists():
-            count += 1
-            aside = self.folder.with_name(f"{self.folder.name}.before-{stamp}-{count}")
-        with disk_errors(self.folder):
-            self.folder.rename(aside)
+        names = (f"{whole.name}.before-{stamp}{more}" for more in ("", *(f"-{i}" for i in range(2, 1000))))
+        aside = next(path for path in map(whole.with_name, names) if not path.exists())
+        with self.writing(), disk_errors(self.folder):
+            whole.rename(aside)
         return aside
 
     def _front_path(self, name: str) -> Path:

@@ -35,6 +35,18 @@ class Strategy(Protocol):
         """Most evaluations a run asks for."""
         ...
 
+    def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
+        """Say which option does not suit a problem of that size.
+
+        Args:
+            variables: Number of variables.
+            objectives: Number of objectives.
+
+        Returns:
+            The option and a sentence with the remedy, or None.
+        """
+        ...
+
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Ask for designs until the budget is spent.
 

@@ -57,6 +57,15 @@ class ComplexMethod:
         """Most evaluations a run asks for."""
         return self.evaluations
 
+    def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
+        """A complex must span the box and fit into the budget; see `Strategy.objection`."""
+        points = self.points or 2 * variables
+        if points <= variables:
+            return "points", f"{points} points do not span {variables} variables; give at least {variables + 1}"
+        if self.evaluations < points:
+            return "evaluations", f"{self.evaluations} do not even make a complex of {points} points; give more"
+        return None
+
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Search from random complexes, one after the other; see `Strategy.run`."""
         aggregate = AGGREGATES[self.aggregate]

@@ -29,9 +29,9 @@ SMALLEST_WEIGHT = 1e-3
 FIRST_SAMPLE = 10
 """Random designs a variable, from which the sweep sets out."""
 
-VISIT = 24
-"""Evaluations a direction gets at each visit; the sweep comes round again while the budget lasts, and no visit
-depends on how often that will be."""
+VISIT = 5
+"""Evaluations a variable that a direction gets at each visit; the sweep comes round again while the budget lasts,
+and no visit depends on how often that will be."""
 
 NEIGHBOURHOOD = (0.02, 0.3)
 """Between these parts of the box, at each visit drawn anew, lies the half width from which the points of a
@@ -51,6 +51,15 @@ class GoalAttainment:
     def budget(self) -> int:
         """Most evaluations a run asks for."""
         return self.evaluations
+
+    def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
+        """The first sample must fit into the budget, each objective have a direction; see `Strategy.objection`."""
+        if self.directions < objectives:
+            return "directions", f"{self.directions} are fewer than the {objectives} objectives; give more"
+        if self.evaluations < FIRST_SAMPLE * variables:
+            least = FIRST_SAMPLE * variables
+            return "evaluations", f"{self.evaluations} do not suffice for the first sample; give at least {least}"
+        return None
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Visit the directions one after the other, round after round; see `Strategy.run`."""
@@ -117,9 +126,9 @@ class _Archive:
 
 
 def _visit(direction: FloatArray, archive: _Archive, problem: Problem, random: np.random.Generator) -> None:
-    """Improve the answer to one direction's problem by a complex that is given `VISIT` evaluations."""
+    """Improve the answer to one direction's problem by a complex that is given `VISIT` evaluations a variable."""
     ideal, span = archive.ideal_and_span()
-    spent = 0
+    spent, granted = 0, VISIT * len(problem.space)
 
     def attainment(told: Told) -> FloatArray:
         scaled = (told.F - ideal) / span / direction
@@ -127,7 +136,7 @@ def _visit(direction: FloatArray, archive: _Archive, problem: Problem, random: n
 
     def score(designs: FloatArray) -> FloatArray:
         nonlocal spent
-        if spent + len(designs) > VISIT:
+        if spent + len(designs) > granted:
             raise _VisitOverError
         spent += len(designs)
         return attainment(archive.score(designs))

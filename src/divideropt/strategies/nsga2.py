@@ -26,6 +26,10 @@ class NSGA2:
         """Most evaluations a run asks for."""
         return self.population * self.generations
 
+    def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
+        """Suits any problem; see `Strategy.objection`."""
+        return None
+
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Breed generation after generation; see `Strategy.run`."""
 

@@ -250,7 +250,7 @@ UNSTABLE = {
 def test_outcome_at_stop(measured, design, formulation) -> None:
     q = outcome_of(measured, Divider(formulation), design(**AT_STOP))
     assert q["outcome"] is Outcome.AT_STOP
-    assert "ends on its stop" in q["text"]
+    assert "rests on its stop" in q["text"]
     assert q["stop_clearance"] <= 0.0
     assert np.isfinite(q["steady_state_error"])  # reported wherever it is defined
 
@@ -295,11 +295,42 @@ def test_outcome_unsettled_of_a_cold_start(measured, design) -> None:
     assert "last tenth" in q["text"]
 
 
+NO_EQUILIBRIUM = {
+    "spool_radius": 0.01216672736689613,
+    "groove_width": 0.0008711971524745354,
+    "total_pressure_drop": 4781832.437796149,
+    "fixed_drop_ratio": 0.6985849115549425,
+    "centred_opening": 0.6222131552921463,
+}
+"""With the listing the force jumps through zero at x = d0 + rv, where it lets both rims vanish: there is no root."""
+
+
 def test_outcome_no_equilibrium(measured, design) -> None:
-    q = outcome_of(measured, Divider(scenario=Scenario(spool_position=0.98)), design())
+    cold = Scenario(settled=False, step_time=0.05)
+    q = outcome_of(measured, Divider("listing", cold), design(**NO_EQUILIBRIUM))
     assert q["outcome"] is Outcome.NO_EQUILIBRIUM
-    assert "before the step" in q["text"]
-    assert np.isnan(q["steady_state_error"])
+    assert "after the step" in q["text"]
+    assert np.isnan(q["stability_margin"])
+
+
+@pytest.mark.parametrize("position", [0.02, 0.05, 0.95, 0.98])
+def test_a_nearly_shut_port_still_has_its_equilibrium(measured, design, position) -> None:
+    q = outcome_of(measured, Divider(scenario=Scenario(spool_position=position)), design())
+    assert q["outcome"] is Outcome.OK
+
+
+def test_a_rest_deep_in_the_contact_stop_is_found(measured, design) -> None:
+    # 3 % beyond x_max: a weak spring of contact would hide it, and the design would seem to have no equilibrium.
+    pressed = design(
+        spool_radius=13.637e-3,
+        groove_width=0.6835e-3,
+        total_pressure_drop=7.6206e6,
+        fixed_drop_ratio=0.9328,
+        centred_opening=0.8742,
+    )
+    q = outcome_of(measured, Divider(scenario=Scenario(spool_position=0.9)), pressed)
+    assert q["outcome"] is Outcome.AT_STOP
+    assert q["stop_clearance"] < 0.0
 
 
 def test_a_response_that_is_not_a_number_has_no_metrics(measured, reference, listing_design) -> None:

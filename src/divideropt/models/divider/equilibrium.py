@@ -1,8 +1,8 @@
 """Equilibria of the valve: states at which every rate vanishes, and how stable they are.
 
-A damped Newton method on the analytic Jacobian does the work. Where it fails, the equilibrium is bracketed: with
-the spool held at a position the pressures are the solution of a network of monotone resistances, and what
-remains is the root of one force over the stroke.
+A damped Newton method on the analytic Jacobian does the work. Where it fails, the valve is let go until it is nearly
+at rest; where that fails too, the equilibrium is bracketed: with the spool held at a position the pressures are the
+solution of a network of monotone resistances, and what remains is the root of one force over the stroke.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,8 @@ from scipy.optimize import brentq
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Stop
-from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
+from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
+from divideropt.ode import SolverSettings, integrate
 
 TOLERANCE = 1e-13
 """Residual at which Newton stops: flows over the source flow, forces over `FORCE_SCALE` times the end area."""
@@ -26,6 +27,16 @@ HALVINGS = 12
 
 FORCE_SCALE = 1e6
 """Pressure [Pa] that scales a force residual."""
+
+HIGHEST_PRESSURE = 5e7
+"""No end chamber presses the spool into its stop with more than this [Pa]."""
+
+RELAXATION_TIME = 2.0
+"""How long a valve is let go [s]: twenty times what it needs to settle."""
+
+RELAXATION_RTOL = 1e-4
+RELAXATION_STEPS = 1500
+"""Tolerance and budget of steps then; Newton does the rest."""
 
 BRACKETS = 64
 """Intervals of the stroke searched for a sign change of the force where Newton fails."""
@@ -62,11 +73,28 @@ def find_equilibrium(design: Design, start: FloatArray) -> Equilibrium | None:
         The equilibrium within the stroke or on the stop, or None if there is none.
     """
     if rests_on_stop(design, start) and design[0].stop == Stop.FROZEN:
-        return _pressed_on_stop(design, start)
-    found = _newton(design, start, _FREE, _BALANCES)
-    if found is not None and abs(found.state[_X]) <= _reach(design):
-        return found
-    return _bracketed(design, start) or _pressed_on_stop(design, start)
+        return rest_on_rigid_stop(design, start)
+    return _polished(design, start) or _let_go(design, start) or _bracketed(design, start)
+
+
+def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Find a rest pressed on a stop that freezes the spool: the pressures balance, the force points outwards.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        start: Which end of the stroke to try first, shape (9,).
+
+    Returns:
+        The rest, or None if there is none or the stop is not rigid.
+    """
+    stop = float(design[0].stop_position)
+    if design[0].stop != Stop.FROZEN:
+        return None
+    for x in sorted((-stop, stop), key=lambda place: abs(place - start[_X])):
+        state = _hold(design, initial_guess(design), x)
+        if state is not None and rates(0.0, state, design)[_XDOT] * x >= 0:
+            return Equilibrium(state, 0.0)
+    return None
 
 
 def rests_on_stop(design: Design, state: FloatArray) -> bool:
@@ -102,6 +130,27 @@ def without_friction(design: Design, extra_force: float = 0.0) -> Design:
     free[0].coulomb_friction = 0.0
     free[0].extra_force = extra_force
     return free
+
+
+def _polished(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Go to the root by Newton, if it is within reach."""
+    found = _newton(design, start, _FREE, _BALANCES)
+    return found if found is not None and abs(found.state[_X]) <= _reach(design) else None
+
+
+def _let_go(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Let the valve move until it is nearly at rest, then go to the root by Newton."""
+    settings = SolverSettings("LSODA", RELAXATION_RTOL, (RELAXATION_RTOL * 1e3,) * N_STATES, RELAXATION_STEPS)
+    released = start.copy()
+    released[_XDOT] = 0.0
+    run = integrate(
+        lambda t, y: rates(t, y, design),
+        lambda t, y: jacobian(t, y, design),
+        (0.0, RELAXATION_TIME),
+        released,
+        settings,
+    )
+    return _polished(design, run.final)
 
 
 def _newton(
@@ -150,26 +199,20 @@ def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
         guess = held[i]
         if guess is None:
             continue
-        x = brentq(lambda x, y=guess: _force_at(design, y, x), places[i], places[i + 1], xtol=1e-12)
-        state = _hold(design, guess, float(x))
-        if state is None:
-            continue
-        found = _newton(design, state, _FREE, _BALANCES)
-        if found is not None and abs(found.state[_X]) <= reach:
+        state = _root_between(design, guess, places[i], places[i + 1])
+        found = None if state is None else _polished(design, state)
+        if found is not None:
             return found
     return None
 
 
-def _pressed_on_stop(design: Design, start: FloatArray) -> Equilibrium | None:
-    """Rest on a rigid stop: the pressures balance and the force presses outwards."""
-    stop = float(design[0].stop_position)
-    if design[0].stop != Stop.FROZEN:
+def _root_between(design: Design, guess: FloatArray, left: float, right: float) -> FloatArray | None:
+    """Find where the force on the held spool vanishes; None where the pressures cannot be solved on the way."""
+    try:
+        x = brentq(lambda x: _force_at(design, guess, x), left, right, xtol=1e-12)
+    except ValueError:  # NaN, or a sign that is not there when asked again
         return None
-    for x in sorted((-stop, stop), key=lambda place: abs(place - start[_X])):
-        state = _hold(design, initial_guess(design), x)
-        if state is not None and rates(0.0, state, design)[_XDOT] * x >= 0:
-            return Equilibrium(state, 0.0)
-    return None
+    return _hold(design, guess, float(x))
 
 
 def _held_states(design: Design, start: FloatArray, places: FloatArray) -> list[FloatArray | None]:
@@ -201,8 +244,9 @@ def _force_at(design: Design, guess: FloatArray, x: float) -> float:
 def _reach(design: Design) -> float:
     """How far an equilibrium is sought: the stop, and what the stop's spring gives."""
     d = design[0]
-    give = 1.01 if d.stop == 0 else 1.0
-    return float(d.stop_position * give)
+    if d.stop != Stop.CONTACT:
+        return float(d.stop_position)
+    return float(d.stop_position + HIGHEST_PRESSURE * d.end_area / STOP_STIFFNESS)
 
 
 def _residual_scales(design: Design, y: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from divideropt.models.divider.equilibrium import (
 )
 from divideropt.models.divider.formulations import Stop
 from divideropt.models.divider.ideal import desired_flows
+from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.response import Response
 from divideropt.models.divider.transient import FlowError, largest_value
@@ -28,10 +29,13 @@ SETTLING_BAND = 0.02
 REST_TOLERANCE = 1e-3
 """How near the flows at the end must be to the equilibrium's for a settled start to count as settled again."""
 
+ROUNDING = 1e-9
+"""A sum of two times may exceed a third by this part of it."""
+
 LAST_PART = 0.1
 """Where the final flows are the end's own, leaving the band in this last part of the time is unsettled."""
 
-_XDOT, _X = 5, 6
+_XDOT, _X = STATES.index("xdot"), STATES.index("x")
 
 
 def measure(response: Response) -> tuple[FloatArray, Verdict]:
@@ -133,7 +137,7 @@ def _dynamic(response: Response, final_flows: FloatArray) -> dict[str, float]:
             "dynamic_error_percent": 100 * dynamic / (scenario.source_flow * scenario.accumulation_time),
         }
     until = error.begin + scenario.accumulation_time
-    if until <= scenario.end_time:
+    if until <= scenario.end_time * (1 + ROUNDING):
         found["cumulative_error"] = error.integrals(_gap(_desired(response)), until)[0]
     return found
 
@@ -193,13 +197,14 @@ def _not_completed(response: Response, found: dict[str, float]) -> Verdict | Non
 
 
 def _at_stop(response: Response, found: dict[str, float]) -> Verdict | None:
-    last = response.phases[-1]
-    if last.end is None or not rests_on_stop(last.design, last.end):
-        return None
-    return Verdict(
-        Outcome.AT_STOP,
-        f"the spool ends on its stop, {abs(last.end[_X]) * 1e3:.4g} mm from the centre: the flows are not controlled",
-    )
+    for phase in response.phases:
+        places = [phase.end] if phase.rest is None else [phase.end, phase.rest.state]
+        for state in places:
+            if phase.end is not None and state is not None and rests_on_stop(phase.design, state):
+                where = abs(state[_X]) * 1e3
+                text = f"the spool rests on its stop, {where:.4g} mm from the centre: the flows are not controlled"
+                return Verdict(Outcome.AT_STOP, text)
+    return None
 
 
 def _no_equilibrium(response: Response, found: dict[str, float]) -> Verdict | None:
@@ -211,7 +216,7 @@ def _no_equilibrium(response: Response, found: dict[str, float]) -> Verdict | No
 
 def _unstable(response: Response, found: dict[str, float]) -> Verdict | None:
     margin = found["stability_margin"]
-    if margin >= 0.0:
+    if not margin < 0.0:  # NaN is not unstable
         return None
     return Verdict(Outcome.UNSTABLE, f"an equilibrium is unstable: a disturbance grows at {-margin:.4g} 1/s")
 

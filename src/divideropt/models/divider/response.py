@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
-from divideropt.models.divider.equilibrium import Equilibrium, find_equilibrium, initial_guess
+from divideropt.models.divider.equilibrium import (
+    Equilibrium,
+    find_equilibrium,
+    initial_guess,
+    rest_on_rigid_stop,
+)
 from divideropt.models.divider.formulations import Formulation, Stop
 from divideropt.models.divider.geometry import Geometry, derive_geometry
 from divideropt.models.divider.kernels import STATES, jacobian, rates, signed_root, zero_state
@@ -99,7 +104,8 @@ def respond(
 
 
 def _at_rest(design: NDArray[np.record]) -> Phase:
-    rest = find_equilibrium(design, initial_guess(design))
+    guess = initial_guess(design)
+    rest = find_equilibrium(design, guess) or rest_on_rigid_stop(design, guess)
     return Phase(design, None, None if rest is None else rest.state, rest)
 
 

@@ -1,0 +1,42 @@
+"""Designs in, results out, whatever the model does: the one place that calls `Model.evaluate`."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from divideropt.models.base import FloatArray, Model, Outcome, Verdict
+
+
+def simulate(
+    model: Model, fixed: Mapping[str, float], names: Sequence[str], designs: FloatArray
+) -> tuple[FloatArray, list[Verdict]]:
+    """Simulate designs that give some of a model's parameters.
+
+    Args:
+        model: By what.
+        fixed: Every parameter by name, in the model's units.
+        names: The parameters that the designs give instead.
+        designs: One row a design, one column a name, shape (n, len(names)).
+
+    Returns:
+        The quantities, shape (n, m), and a verdict a design. A design on which the model raises an exception is
+        `crashed`, its quantities NaN; the others are not touched by it.
+    """
+    places = {name: i for i, name in enumerate(model.parameters)}
+    full = np.tile([fixed[name] for name in model.parameters], (len(designs), 1))
+    full[:, [places[name] for name in names]] = designs
+    return _guarded(model, full)
+
+
+def _guarded(model: Model, full: FloatArray) -> tuple[FloatArray, list[Verdict]]:
+    """Evaluate a batch; where that raises, one design at a time, so that only the guilty one is blamed."""
+    try:
+        with np.errstate(all="ignore"):  # a failed design says so by its outcome
+            quantities, verdicts = model.evaluate(full)
+    except Exception as error:  # a model may be anybody's
+        if len(full) == 1:
+            text = f"the model broke down: {type(error).__name__}: {error}"
+            return np.full((1, len(model.quantities)), np.nan), [Verdict(Outcome.CRASHED, text)]
+        parts = [_guarded(model, row[None]) for row in full]
+        return np.concatenate([q for q, _ in parts]), [v for _, verdicts in parts for v in verdicts]
+    return np.asarray(quantities, dtype=np.float64), list(verdicts)
