@@ -5,12 +5,13 @@ import shlex
 import signal
 import sys
 import traceback
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from divideropt.errors import DivideroptError, FileMistakes, NoFeasibleDesignError, UsageError
+from divideropt.errors import DiskError, DivideroptError, FileMistakes, NoFeasibleDesignError, UsageError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,14 +97,15 @@ def status(store: Path, as_json: bool) -> None:
 
     found = read_status(Store(store))
     if as_json:
-        click.echo(json.dumps(dataclasses.asdict(found), indent=2))
+        _write_data(json.dumps(dataclasses.asdict(found), indent=2) + "\n")
         return
-    click.echo(f"{found.campaign}: {_count(found.front)} designs on the combined front")
+    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front"]
     for item in found.runs:
         outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
         volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
-        click.echo(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+    _write_data("\n".join(lines) + "\n")
 
 
 @commands.command()
@@ -111,6 +113,7 @@ def status(store: Path, as_json: bool) -> None:
 @click.option("--out", type=_FILE, help="Where to write it; report.html in the store where not given.")
 def report(store: Path, out: Path | None) -> None:
     """Write the HTML report of a store again."""
+    _check_out(out, (".html",))
     from divideropt.report import write_report
     from divideropt.store import Store
 
@@ -124,7 +127,7 @@ def report(store: Path, out: Path | None) -> None:
 def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
     """Evaluate every design of a CSV file: columns are parameters by name, SI."""
     settings = _load(campaign)
-    _check_out(out, (".csv", ".parquet"))
+    _check_out(out, (".csv", ".parquet"), designs)
     from divideropt.campaign.designs import evaluate_designs, read_designs
     from divideropt.campaign.plan import build_model
 
@@ -175,7 +178,7 @@ def schema() -> None:
 
     from divideropt.campaign.dump import campaign_schema
 
-    click.echo(json.dumps(campaign_schema(), indent=2, ensure_ascii=False))
+    _write_data(json.dumps(campaign_schema(), indent=2, ensure_ascii=False) + "\n")
 
 
 def _load(path: Path | None) -> "Campaign":
@@ -184,20 +187,25 @@ def _load(path: Path | None) -> "Campaign":
     return default_campaign() if path is None else load_campaign(path)
 
 
-def _check_out(out: Path | None, known: tuple[str, ...]) -> None:
-    if out is not None and out.suffix not in known:
+def _check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None) -> None:
+    """Refuse an output that cannot be written, or that would replace what is read or belongs to a store."""
+    if out is None:
+        return
+    if out.suffix not in known:
         raise UsageError(f"--out {out}: the name must end in {' or '.join(known)}")
-    if out is not None and not out.parent.is_dir():
+    if not out.parent.is_dir():
         raise UsageError(f"--out {out}: there is no folder {out.parent}; make it first")
+    if read is not None and out.exists() and read.exists() and out.samefile(read):
+        raise UsageError(f"--out {out}: that is the file to be read; name another")
+    whole = out.resolve()
+    stores = [p for p in whole.parents if (p / "campaign.yaml").is_file() and (p / "evaluations").is_dir()]
+    if stores and whole != stores[0] / "report.html":
+        raise UsageError(f"--out {out}: that is inside the store {stores[0]}; name a file elsewhere")
 
 
 def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
     if out is None:
-        try:
-            table.to_csv(sys.stdout, index=False)
-            sys.stdout.flush()
-        except BrokenPipeError:  # the reader has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _write_data(table.to_csv(index=False))
         return
     from divideropt.store.files import publish
 
@@ -212,9 +220,24 @@ def _terminated(number: int, frame: object) -> None:
     sys.exit(128 + number)
 
 
+def _write_data(text: str) -> None:
+    """Write to standard output; a reader who has seen enough is no mistake, a full disk is."""
+    if sys.stdout is None:
+        raise DiskError("standard output is closed; give --out, or let it be open")
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise DiskError(f"standard output: {error.strerror}; nothing in a store was touched") from error
+
+
 def _count(number: int | None) -> str:
     return "no" if number is None else str(number)
 
 
 def _say(words: str) -> None:
-    click.echo(words, err=True)
+    with suppress(OSError):  # nobody to hear it
+        click.echo(words, err=True)

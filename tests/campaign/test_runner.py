@@ -141,6 +141,15 @@ def test_a_damaged_campaign_in_a_store_is_the_stores_fault(whole, tmp_path, cont
         run(folder)
 
 
+def test_logs_without_their_campaign_are_not_adopted(whole, tmp_path):
+    folder = tmp_path / "store"
+    run(folder)
+    (folder / "campaign.yaml").unlink()
+    with pytest.raises(StoreError, match="to say whose"):
+        run(folder)
+    assert not (folder / "campaign.yaml").exists()
+
+
 def test_a_folder_that_is_no_store_is_not_moved(tmp_path):
     (tmp_path / "thesis.txt").write_text("mine")
     with pytest.raises(UsageError, match="not a store"):

@@ -149,6 +149,8 @@ def _stdout(done):
         ("centred_opening\n1.5\nnan\n", ["d.csv:2:1:", "above 0 and below 1", "d.csv:3:1:"]),
         ("spool_radius,groove_width\n0.008\n", ["d.csv:2:1:", "1 cells, the header 2"]),
         ("", ["the file is empty"]),
+        ('spool_radius,design_id\n0.009,"unclosed\n0.010,b\n', ["d.csv", "unexpected end of data"]),
+        ("spool_radius\n0.008\n\n0.009\n", ["d.csv:3:1:", "empty"]),
     ],
 )
 def test_a_bad_table_of_designs_is_refused_with_every_place(tmp_path, monkeypatch, capsys, text, places):
@@ -188,9 +190,13 @@ def test_simulate_gives_a_table_or_a_picture(tmp_path):
         (["report", "nowhere"], "no store there"),
         (["evaluate", "nowhere.csv"], "readable CSV file"),
         (["frobnicate"], "No such command"),
+        (["evaluate", "d.csv", "--out", "d.csv"], "the file to be read"),
+        (["evaluate", "d.csv", "--out", "nowhere/o.csv"], "no folder nowhere"),
+        (["report", "x", "--out", "campaign.yaml"], "must end in .html"),
     ],
 )
 def test_a_wrong_call_ends_with_2_and_a_sentence(tmp_path, monkeypatch, capsys, arguments, words):
+    (tmp_path / "d.csv").write_text("spool_radius\n0.008\n")
     code, out, err = call_here(arguments, tmp_path, monkeypatch, capsys)
     assert code == 2
     assert out == ""
@@ -208,6 +214,23 @@ def test_check_and_run_refuse_a_bad_campaign_with_every_place(tmp_path):
         lines = done.stderr.splitlines()
         assert [line.split(" ")[0] for line in lines] == ["small.yaml:5:17:", "small.yaml:12:38:"]
     assert not (tmp_path / "results").exists()
+
+
+def test_absurd_dimensions_are_an_outcome_not_a_traceback(tmp_path, monkeypatch, capsys):
+    code, out, err = call_here(["simulate", "--set", "spool_radius=1e300 m"], tmp_path, monkeypatch, capsys)
+    assert code == 0
+    assert out.count("\n") == 1
+    assert "outcome: crashed" in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_standard_output_ends_with_74(tmp_path):
+    command = [sys.executable, "-m", "divideropt", "schema"]
+    with Path("/dev/full").open("w", encoding="utf-8") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    assert done.returncode == 74
+    assert "No space left" in done.stderr
 
 
 def test_schema_is_json_and_knows_the_parameters(tmp_path):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity
 from divideropt.problem import DesignSpace, Variable
@@ -18,9 +18,13 @@ from divideropt.report.front import Design, leanings
 from divideropt.report.page import render_report
 from divideropt.report.responses import MOST_POINTS
 from divideropt.report.sampling import spread, thin
-from divideropt.store import Store
+from divideropt.store import Store, TableSchema
 
 HOSTILE = "</script><script>window.hacked=1</script>"
+
+
+def schema_of(store):
+    return TableSchema.of(build_problem(stored_campaign(store)))
 
 
 def _copy(store, folder):
@@ -40,7 +44,7 @@ def test_every_run_is_counted(data):
 
 
 def test_the_front_is_the_stored_one_best_first(store, data):
-    stored = store.read_front("combined")
+    stored = store.read_front("combined", schema_of(store))
     assert {d.design_id for d in data.front} == set(stored["design_id"].to_pylist())
     attainments = [d.attainment for d in data.front]
     assert attainments == sorted(attainments)
@@ -50,8 +54,8 @@ def test_the_front_is_the_stored_one_best_first(store, data):
 def test_objectives_are_magnitudes(store, data):
     signed = dict(
         zip(
-            store.read_front("combined")["design_id"].to_pylist(),
-            store.read_front("combined")["dynamic_error"].to_pylist(),
+            store.read_front("combined", schema_of(store))["design_id"].to_pylist(),
+            store.read_front("combined", schema_of(store))["dynamic_error"].to_pylist(),
             strict=True,
         )
     )
@@ -97,7 +101,7 @@ def test_without_its_front_the_store_is_reported_as_unfinished(store, data, tmp_
 
 def test_a_front_older_than_the_logs_is_not_shown(store, data, tmp_path):
     copy = _copy(store, tmp_path / "copy")
-    copy.write_front("combined", copy.read_front("combined").slice(1))
+    copy.write_front("combined", copy.read_front("combined", schema_of(store)).slice(1))
     again = read_report(copy)
     assert again.front == data.front
     assert "older than the logs" in again.notes[0]

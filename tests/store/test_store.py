@@ -1,11 +1,13 @@
 """The store: what is written is read back to the bit, and what is damaged is refused."""
 
+import os
+
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
-from divideropt.errors import DiskError, StoreError, StoreInUseError
+from divideropt.errors import DiskError, StoreError, StoreInUseError, UsageError
 from divideropt.store import Store, TableSchema
 from divideropt.store.files import publish
 from toy_model import toy_problem
@@ -87,6 +89,29 @@ def test_a_missing_part_is_noticed(tmp_path, problem):
     sorted((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))[2].unlink()
     with pytest.raises(StoreError, match="batch 2 is missing"):
         list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+    with pytest.raises(StoreError, match="the part before it is missing"):
+        Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
+
+
+def test_an_outcome_nobody_knows_is_refused(tmp_path, problem):
+    filled_log(Store(tmp_path), problem, batches=1)
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    table = pq.read_table(part)
+    place = table.schema.get_field_index("outcome")
+    pq.write_table(table.set_column(place, table.schema.field(place), [["bogus"] * table.num_rows]), part)
+    with pytest.raises(StoreError, match="'bogus'"):
+        list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+
+
+def test_only_regular_files_are_replaced(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(UsageError, match="not a regular file"):
+        publish(tmp_path / "pipe", lambda path: path.write_text("x"))
+    (tmp_path / "target").write_text("old")
+    (tmp_path / "link").symlink_to("target")
+    publish(tmp_path / "link", lambda path: path.write_text("new"))
+    assert (tmp_path / "target").read_text() == "new"
+    assert (tmp_path / "link").is_symlink()
 
 
 def test_a_damaged_part_is_refused_never_read_wrong(tmp_path, problem):

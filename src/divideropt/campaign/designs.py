@@ -49,7 +49,7 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
     known = {p.name: p for p in parameters}
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file)
+            reader = csv.reader(file, strict=True)
             header = next(reader, [])
             _check_header(path, header, known)
             rows = [(reader.line_num, row or [""]) for row in reader]

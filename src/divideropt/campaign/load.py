@@ -45,9 +45,10 @@ def stored_campaign(store: Store) -> Campaign:
         UsageError: There is no store.
         StoreError: Its campaign is damaged.
     """
+    text = store.read_campaign()
     try:
-        return parse_campaign(store.read_campaign(), str(store.campaign_path))
-    except FileMistakes as error:
+        return parse_campaign(text, str(store.campaign_path))
+    except UsageError as error:
         raise StoreError(f"{error}\nThis store's campaign is damaged; restore it, or start anew (--fresh)") from error
 
 
@@ -70,7 +71,7 @@ def _campaign(document: Document) -> Campaign:
         found += _placed(document, ("model", "kind"), str(error))
     try:
         campaign = Campaign.model_validate(document.data, context=tables)
-        found += _objections(document, campaign)
+        found += [] if found else _objections(document, campaign)
     except ValidationError as error:
         for detail in error.errors(include_url=False):
             found += _reported(document, detail)

@@ -1,7 +1,9 @@
 """The `model` section for a model of the user's own, named `package.module:Class`."""
 
 import importlib
+import sys
 from collections.abc import Mapping
+from contextlib import redirect_stdout
 from typing import Annotated, Any, cast
 
 from pydantic import Field, PlainValidator
@@ -29,17 +31,19 @@ def load_plugin(kind: str, options: Mapping[str, Any]) -> Model:
     if not all(part.isidentifier() for part in (*module.split("."), name)):
         raise UsageError(f"{show(kind)} names no class; write package.module:Class")
     try:
-        made = getattr(importlib.import_module(module), name)
+        with redirect_stdout(sys.stderr):
+            made = getattr(importlib.import_module(module), name)
     except ImportError as error:
         raise UsageError(f"{show(kind)} cannot be imported ({error}); install it, or put it on PYTHONPATH") from None
     except AttributeError:
         raise UsageError(f"the module {module} has no {name!r}; check the class after the colon") from None
-    except Exception as error:  # the module is the user's own and may fail in any way
+    except (Exception, SystemExit) as error:  # the module is the user's own and may fail in any way
         raise UsageError(f"importing {module} fails ({type(error).__name__}: {error}); mend it first") from error
     try:
-        model = cast(Model, made(**options))
+        with redirect_stdout(sys.stderr):
+            model = cast(Model, made(**options))
         Tables(dict(model.parameters), dict(model.quantities))
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         reason = f"{type(error).__name__}: {error}"
         raise UsageError(
             f"{show(kind)} makes no model ({reason}); check `options`, and that it is a Model"

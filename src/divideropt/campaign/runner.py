@@ -22,7 +22,7 @@ from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import Run, build_problem, plan_runs
 from divideropt.campaign.progress import Display
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, work, work_as_process
-from divideropt.errors import DivideroptError, NoFeasibleDesignError
+from divideropt.errors import DivideroptError, NoFeasibleDesignError, StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
 from divideropt.store import Store, TableSchema
@@ -113,6 +113,11 @@ class Runner:
             if self._store.read_campaign() == self._text:
                 return
             check_extends(stored_campaign(self._store), self._campaign, self._store.folder)
+        elif self._store.has_logs:
+            raise StoreError(
+                f"{self._store.folder}: there are evaluations, but no campaign.yaml to say whose; restore it, "
+                "or name another --store"
+            )
         self._store.write_campaign(self._text)
 
     def _warm_up(self, problem: Problem) -> None:

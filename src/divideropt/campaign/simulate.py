@@ -9,7 +9,7 @@ import pandas as pd
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.plan import build_model
 from divideropt.errors import UsageError
-from divideropt.models import Verdict
+from divideropt.models import Outcome, Verdict
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
@@ -66,8 +66,13 @@ def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
     if not isinstance(model, Divider):
         raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
     parameters = campaign.model.base_parameters() | dict(_read(setting) for setting in settings)
-    response = model.respond(parameters)
-    return SimulatedResponse(_table(response), measure(response)[1])
+    try:
+        with np.errstate(all="ignore"):  # a failed design says so by its outcome
+            response = model.respond(parameters)
+            return SimulatedResponse(_table(response), measure(response)[1])
+    except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
+        verdict = Verdict(Outcome.CRASHED, f"the model broke down: {type(error).__name__}: {error}")
+        return SimulatedResponse(pd.DataFrame(columns=list(COLUMNS), dtype=float), verdict)
 
 
 def _table(response: Response) -> pd.DataFrame:

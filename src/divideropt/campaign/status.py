@@ -76,5 +76,5 @@ def read_status(store: Store) -> StoreStatus:
                 hypervolume=None if reference is None else hypervolume_history(told, reference, [table.num_rows])[0],
             )
         )
-    front = store.read_front("combined")
+    front = store.read_front("combined", schema)
     return StoreStatus(campaign.name, tuple(runs), None if front is None else front.num_rows)

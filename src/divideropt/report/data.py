@@ -150,7 +150,7 @@ def _front(
     would contradict every count beside it.
     """
     table = combined_front([run_front(logs[name], problem, schema) for name in sorted(logs)], problem, schema)
-    stored = store.read_front("combined")
+    stored = store.read_front("combined", schema)
     if stored is None:
         return table, ("The campaign has not ended: the front below is that of the evaluations logged so far.",)
     if stored["design_id"].to_pylist() != table["design_id"].to_pylist():

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from divideropt.errors import DiskError
+from divideropt.errors import DiskError, UsageError
 
 TEMPORARY_PREFIX = ".new-"
 """Readers pass over names that begin with a dot."""
@@ -19,8 +19,12 @@ def publish(path: Path, write: Callable[[Path], None]) -> None:
         write: Writes the content to the path it is given.
 
     Raises:
+        UsageError: `path` is there and no regular file, such as a device.
         DiskError: The disk refused; `path` is as it was.
     """
+    path = path.resolve()  # a link stays a link to what is replaced
+    if path.exists() and not path.is_file():
+        raise UsageError(f"{path}: not a regular file, so it is not replaced; name another")
     temporary = path.with_name(f"{TEMPORARY_PREFIX}{os.getpid()}-{path.name}")
     with disk_errors(path):
         try:

@@ -90,8 +90,18 @@ class RunLog:
         self._last_flush = time.monotonic()
 
     def table(self) -> pa.Table:
-        """Read every part as one table."""
-        parts = [self._read(path) for path in self._parts()]
+        """Read every part as one table.
+
+        Raises:
+            StoreError: A part is damaged, missing or not this run's.
+        """
+        parts: list[pa.Table] = []
+        rows = 0
+        for path in self._parts():
+            if path.stem != f"part-{rows:09d}":
+                raise StoreError(f"{path}: the part before it is missing; restore it, or start anew (--fresh)")
+            parts.append(self._read(path))
+            rows += parts[-1].num_rows
         return pa.concat_tables(parts) if parts else self._schema.arrow.empty_table()
 
     def _parts(self) -> list[Path]:

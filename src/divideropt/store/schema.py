@@ -77,10 +77,8 @@ class TableSchema:
 
     def evaluations(self, table: pa.Table) -> Evaluations:
         """Read rows back, bit for bit; null becomes NaN."""
-        verdicts = [
-            Verdict(Outcome(outcome), text)
-            for outcome, text in zip(table["outcome"].to_pylist(), table["outcome_text"].to_pylist(), strict=True)
-        ]
+        words = zip(table["outcome"].to_pylist(), table["outcome_text"].to_pylist(), strict=True)
+        verdicts = [_verdict(outcome, text) for outcome, text in words]
         return Evaluations(_matrix(table, self.variables), _matrix(table, self.quantities), verdicts)
 
 
@@ -118,6 +116,12 @@ def _number(name: str, unit: str, symbol: str, description: str, role: Role, *, 
     if signed:
         metadata["objective"] = "acts on the magnitude; the column is signed"
     return pa.field(name, pa.float64(), metadata=metadata)
+
+
+def _verdict(outcome: str, text: str) -> Verdict:
+    if outcome not in set(Outcome):
+        raise StoreError(f"the log has an outcome {outcome!r}, which this program does not know; restore it")
+    return Verdict(Outcome(outcome), text)
 
 
 def _columns(names: tuple[str, ...], matrix: FloatArray) -> dict[str, FloatArray]:

@@ -36,6 +36,11 @@ class Store:
         return self.folder / "report.html"
 
     @property
+    def has_logs(self) -> bool:
+        """Whether any evaluation is logged."""
+        return any((self.folder / "evaluations").glob("*/*.parquet"))
+
+    @property
     def status_folder(self) -> Path:
         """What running processes say of themselves; of no interest once they are done."""
         return self.folder / ".running"
@@ -87,11 +92,11 @@ class Store:
             path.parent.mkdir(parents=True, exist_ok=True)
         publish(path, lambda p: pq.write_table(table, p, write_page_checksum=True))
 
-    def read_front(self, name: str) -> pa.Table | None:
+    def read_front(self, name: str, schema: TableSchema) -> pa.Table | None:
         """Read a front, or None if it has not been written.
 
         Raises:
-            StoreError: It is damaged or of a later version.
+            StoreError: It is damaged, of a later version, or not this campaign's.
         """
         path = self._front_path(name)
         if not path.is_file():
@@ -101,6 +106,8 @@ class Store:
         except (pa.ArrowException, OSError) as error:
             raise StoreError(f"{path}: damaged ({error}); delete it and run the campaign again") from error
         check_version(table.schema, path)
+        if not table.schema.equals(schema.arrow.remove(schema.arrow.get_field_index("batch"))):
+            raise StoreError(f"{path}: its columns are not this campaign's; delete it and run the campaign again")
         return table
 
     @contextmanager
@@ -154,6 +161,8 @@ def _write_text(path: Path, text: str) -> None:
 @contextmanager
 def _held(folder: Path, name: str, patience: float, reason: str) -> Iterator[None]:
     """Hold a lock of the kernel's, which ends with the process that has it."""
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"{folder}: a file, not a folder; name another --store")
     with disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         lock = FileLock(folder / name, timeout=patience)
