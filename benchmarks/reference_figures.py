@@ -38,7 +38,7 @@ def balance(formulation: str, clearance: float) -> tuple[float, float]:
     """Return QL1 + QL2 + end-seal leakage - Qs [m^3/s] and the steady-state error [%] at the equilibrium."""
     p = parameter_set("thesis_base") | {"radial_clearance": clearance}
     reading, inputs = FORMULATIONS[formulation], Scenario().phases()[-1][0]
-    geometry = derive_geometry(p, holes=reading.arc_holes)
+    geometry = derive_geometry(p, holes=reading.arc_holes, stem=reading.stem)
     sides = pilot_sides(p, geometry.viscosity, inputs.spool_position, reading)
     design = coefficients(p, geometry, sides, inputs, reading)
     rest = find_equilibrium(design, initial_guess(design))

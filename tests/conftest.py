@@ -68,7 +68,7 @@ def record() -> Callable[..., NDArray[np.record]]:
     ) -> NDArray[np.record]:
         reading = FORMULATIONS[formulation]
         inputs = (scenario or Scenario()).phases()[phase][0]
-        geometry = derive_geometry(parameters, holes=reading.arc_holes)
+        geometry = derive_geometry(parameters, holes=reading.arc_holes, stem=reading.stem)
         sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, reading)
         return coefficients(parameters, geometry, sides, inputs, reading)
 

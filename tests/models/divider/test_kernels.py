@@ -12,7 +12,7 @@ from divideropt.models.divider.formulations import OrificeLaw, PortRange, Stop
 from divideropt.models.divider.kernels import N_STATES, ROOT_BLEND, STATES, jacobian, rates, signed_root
 
 NESTED = ("motion", "_floored", "_root", "_port", "_stop_force")
-FORMULATIONS = ("conservative", "listing")
+FORMULATIONS = ("conservative", "text", "listing")
 
 STATE_SCALES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 0.1, 1e-3, 1e7, 1e7])
 
@@ -50,9 +50,11 @@ def python_instead() -> Iterator[None]:
 
 
 def ports_are_numbers(y: np.ndarray, d) -> bool:
-    """Whether C.3's port 2 stays within its arccosine: beyond, the compiled kernel gives NaN, Python raises."""
-    x = math.copysign(min(abs(y[6]), d.stop_position), y[6])
-    x1 = min(max(x, d.port_offset - d.port_radius), d.port_offset + d.port_radius)
+    """Whether both ports stay within their arccosines: beyond, the compiled kernel gives NaN, Python raises."""
+    x1 = y[6]
+    if d.port_range == PortRange.FIRST:
+        x = math.copysign(min(abs(y[6]), d.stop_position), y[6])
+        x1 = min(max(x, d.port_offset - d.port_radius), d.port_offset + d.port_radius)
     return max(abs(d.port_offset + x1), abs(d.port_offset - x1)) < d.port_radius
 
 
@@ -105,7 +107,7 @@ def test_jacobian_is_the_central_difference_of_the_rates(design, record, formula
     check_jacobian(record(design(**changes), formulation), drawn)
 
 
-@pytest.mark.parametrize("formulation", ["conservative", "listing"])
+@pytest.mark.parametrize("formulation", FORMULATIONS)
 @settings(phases=[Phase.explicit, Phase.generate])
 @given(DESIGNS, smooth_states(lowest=-20))
 def test_jacobian_holds_for_negative_pressures(design, record, formulation, changes, drawn) -> None:
@@ -177,8 +179,14 @@ def test_orifice_law_is_odd(drop, law) -> None:
 
 @given(st.floats(ROOT_BLEND, 1e8))
 def test_orifice_law_is_the_root_beyond_the_blend(drop) -> None:
-    for law in OrificeLaw:
+    for law in (OrificeLaw.SMOOTH_ROOT, OrificeLaw.SIGNED_ROOT):
         assert signed_root(np.array([drop]), law)[0] == math.sqrt(drop)
+
+
+@given(st.floats(0.0, 1e8))
+def test_printed_orifice_law(drop) -> None:
+    found = signed_root(np.array([drop]), OrificeLaw.TANH_ROOT)[0]
+    assert found == pytest.approx(math.tanh(drop / 1e4) * math.sqrt(drop), rel=1e-14)  # (2.9), p_tan of model.md
 
 
 def test_smooth_root_is_once_continuously_differentiable_at_the_blend() -> None:

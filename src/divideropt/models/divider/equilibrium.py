@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from divideropt.models.base import FloatArray
-from divideropt.models.divider.formulations import Stop
+from divideropt.models.divider.formulations import PortRange, Stop
 from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
 from divideropt.ode import SolverSettings, integrate
 
@@ -98,8 +98,8 @@ def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
 
 
 def rests_on_stop(design: Design, state: FloatArray) -> bool:
-    """Whether the spool is on its stop, or beyond it."""
-    return bool(abs(state[_X]) >= design[0].stop_position)
+    """Whether the spool is on its stop, or beyond it; never where the formulation has none."""
+    return bool(design[0].stop != Stop.NONE and abs(state[_X]) >= design[0].stop_position)
 
 
 def initial_guess(design: Design) -> FloatArray:
@@ -242,8 +242,10 @@ def _force_at(design: Design, guess: FloatArray, x: float) -> float:
 
 
 def _reach(design: Design) -> float:
-    """How far an equilibrium is sought: the stop, and what the stop's spring gives."""
+    """How far an equilibrium is sought: the stop and what its spring gives, or where the ports end."""
     d = design[0]
+    if d.port_range == PortRange.PRINTED:  # beyond, the equations give no number
+        return float(d.port_radius - abs(d.port_offset))
     if d.stop != Stop.CONTACT:
         return float(d.stop_position)
     return float(d.stop_position + HIGHEST_PRESSURE * d.end_area / STOP_STIFFNESS)

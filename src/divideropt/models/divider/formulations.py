@@ -1,12 +1,12 @@
 """Where the formulations of the one valve differ: everything else is the same code.
 
 The thesis's printed equations, its appendix and its code disagree; `conservative` is the physics, corrected,
-and `listing` is Appendix C.3 as it ran.
+`text` is Chapter 2 as printed, and `listing` is Appendix C.3 as it ran.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import IntEnum, StrEnum
 from types import MappingProxyType
 
 
@@ -16,7 +16,20 @@ class OrificeLaw(IntEnum):
     SMOOTH_ROOT = 0
     """Exact root from 100 Pa on, an odd C¹ polynomial below."""
     SIGNED_ROOT = 1
-    """sign(Δp)·sqrt(abs Δp), with its infinite slope at 0."""
+    """sign(Δp)·sqrt(abs Δp), with its infinite slope at 0 (C.3)."""
+    TANH_ROOT = 2
+    """tanh(Δp/p_tan)·sqrt(abs Δp), (2.9)."""
+
+
+class Pilot(StrEnum):
+    """Which solution of the groove's continuity equation gives the pilot flows."""
+
+    HYPERBOLIC = "hyperbolic"
+    """Of the corrected equation: cosh and sinh about the mean pressure of the two chambers."""
+    TRIGONOMETRIC = "trigonometric"
+    """Of (A.1) as printed: cos and sin about that mean, (2.20)-(2.33), (2.42)-(2.45)."""
+    HOMOGENEOUS = "homogeneous"
+    """The same without the particular solution: about zero, (A.22)-(A.25), (A.39)-(A.42), as coded in C.3."""
 
 
 class PortRange(IntEnum):
@@ -26,6 +39,8 @@ class PortRange(IntEnum):
     """Each port is shut or full beyond its own range; its rim has no chord there."""
     FIRST = 1
     """The spool is held in port 1's range for both ports (C.3): port 2's arccosine may give NaN."""
+    PRINTED = 2
+    """(2.15), (2.18) as printed: not a number where the spool has left a port."""
 
 
 class Stop(IntEnum):
@@ -36,7 +51,7 @@ class Stop(IntEnum):
     FROZEN = 1
     """The position stands still beyond the stop while the velocity goes on growing (C.3)."""
     NONE = 2
-    """Nothing: the spool moves on."""
+    """Nothing: the spool moves on (the printed equations have none)."""
 
 
 class PressureFloor(IntEnum):
@@ -46,6 +61,8 @@ class PressureFloor(IntEnum):
     """The flow laws."""
     EVERYTHING = 1
     """Flow laws and forces (C.3)."""
+    NOTHING = 2
+    """Nothing: pressures are as printed."""
 
 
 @dataclass(frozen=True)
@@ -53,48 +70,76 @@ class Formulation:
     """One reading of the valve.
 
     Attributes:
-        hyperbolic_pilot: Pilot groove from the corrected continuity equation (cosh and sinh), or from (A.22)-
-            (A.42) as coded (cos and sin without the particular solution).
+        pilot: See `Pilot`.
         mirrored_leakage: Whether the leakage of side 2 mirrors side 1; C.3 has a minus there (a slip).
         arc_holes: Holes counted in the first term of (2.15).
         chord_holes: Holes counted in its second term; C.3 forgets them (operator precedence).
         rim_holes: Holes counted in (2.18).
+        stem: Whether the spool end's area is less that of the stem; (3.13) as printed is not.
+        end_seals: Whether the end seals leak to tank (C.3).
+        transient_force: Whether the jets brake the spool over the damping length (C.3).
+        pilot_bypass: Whether what flows through the grooves is taken from the source and reaches the flow chambers;
+            off only to see its share of an error.
         orifice_law: See `OrificeLaw`.
         port_range: See `PortRange`.
         stop: See `Stop`.
         pressure_floor: See `PressureFloor`.
     """
 
-    hyperbolic_pilot: bool
+    pilot: Pilot
     mirrored_leakage: bool
     arc_holes: int
     chord_holes: int
     rim_holes: int
+    stem: bool
+    end_seals: bool
+    transient_force: bool
     orifice_law: OrificeLaw
     port_range: PortRange
     stop: Stop
     pressure_floor: PressureFloor
+    pilot_bypass: bool = True
 
 
 FORMULATIONS: Mapping[str, Formulation] = MappingProxyType(
     {
         "conservative": Formulation(
-            hyperbolic_pilot=True,
+            pilot=Pilot.HYPERBOLIC,
             mirrored_leakage=True,
             arc_holes=2,
             chord_holes=2,
             rim_holes=2,
+            stem=True,
+            end_seals=True,
+            transient_force=True,
             orifice_law=OrificeLaw.SMOOTH_ROOT,
             port_range=PortRange.OWN,
             stop=Stop.CONTACT,
             pressure_floor=PressureFloor.FLOWS,
         ),
+        "text": Formulation(
+            pilot=Pilot.TRIGONOMETRIC,
+            mirrored_leakage=True,
+            arc_holes=1,
+            chord_holes=1,
+            rim_holes=1,
+            stem=False,
+            end_seals=False,
+            transient_force=False,
+            orifice_law=OrificeLaw.TANH_ROOT,
+            port_range=PortRange.PRINTED,
+            stop=Stop.NONE,
+            pressure_floor=PressureFloor.NOTHING,
+        ),
         "listing": Formulation(
-            hyperbolic_pilot=False,
+            pilot=Pilot.HOMOGENEOUS,
             mirrored_leakage=False,
             arc_holes=2,
             chord_holes=1,
             rim_holes=2,
+            stem=True,
+            end_seals=True,
+            transient_force=True,
             orifice_law=OrificeLaw.SIGNED_ROOT,
             port_range=PortRange.FIRST,
             stop=Stop.FROZEN,

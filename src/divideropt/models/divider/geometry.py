@@ -50,12 +50,13 @@ class Geometry:
     open_drop: float
 
 
-def derive_geometry(p: Mapping[str, float], *, holes: int) -> Geometry:
+def derive_geometry(p: Mapping[str, float], *, holes: int, stem: bool = True) -> Geometry:
     """Derive the geometry.
 
     Args:
         p: Every parameter by name, SI.
         holes: Holes a port has, as the formulation counts them; enters `open_drop` alone.
+        stem: Whether the spool end's area is less that of the stem.
 
     Returns:
         The derived dimensions.
@@ -65,7 +66,7 @@ def derive_geometry(p: Mapping[str, float], *, holes: int) -> Geometry:
     land_length = p["land_length_ratio"] * p["land_distance"]
     spool_length = land_length / p["land_fraction"]
     stem_radius = r * p["stem_ratio"]
-    end_area = math.pi * (r**2 - stem_radius**2)
+    end_area = math.pi * (r**2 - (stem_radius**2 if stem else 0.0))
     drop, fixed_drop = p["total_pressure_drop"], p["fixed_drop_ratio"] * p["total_pressure_drop"]
     fixed_area = _orifice_area(p["design_flow"], p["fixed_discharge"], p["density"], fixed_drop)
     share_1 = 2 * p["fixed_area_ratio"] / (1 + p["fixed_area_ratio"])

@@ -61,6 +61,9 @@ COEFFICIENTS = np.dtype(
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
 
+TANH_DROP = 1e4
+"""p_tan of (2.9) [Pa]."""
+
 STEEPEST = 1.0
 """The signed root's infinite slope at 0 is replaced in the Jacobian, not in the rates, by that at this drop [Pa]."""
 
@@ -117,13 +120,13 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
         out: Receives the rates, shape (9,).
         jac: Receives the Jacobian, shape (9, 9); must hold zeros.
     """
-    Ps, Ps_ = _floored(y[0])
-    Pa1, Pa1_ = _floored(y[1])
-    Pa2, Pa2_ = _floored(y[2])
-    Pb1, Pb1_ = _floored(y[3])
-    Pb2, Pb2_ = _floored(y[4])
-    PL1, PL1_ = _floored(y[7])
-    PL2, PL2_ = _floored(y[8])
+    Ps, Ps_ = _floored(y[0], d.pressure_floor)
+    Pa1, Pa1_ = _floored(y[1], d.pressure_floor)
+    Pa2, Pa2_ = _floored(y[2], d.pressure_floor)
+    Pb1, Pb1_ = _floored(y[3], d.pressure_floor)
+    Pb2, Pb2_ = _floored(y[4], d.pressure_floor)
+    PL1, PL1_ = _floored(y[7], d.pressure_floor)
+    PL2, PL2_ = _floored(y[8], d.pressure_floor)
     xdot, x, x_ = y[5], y[6], 1.0
     if d.stop == 1 and abs(x) > d.stop_position:  # C.3 freezes the spool
         x, x_ = math.copysign(d.stop_position, x), 0.0
@@ -258,9 +261,9 @@ def signed_root(drops, law):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _floored(p):  # type: ignore[no-untyped-def]
-    """Return max(p, 0) and its slope."""
-    return (0.0, 0.0) if p < 0.0 else (p, 1.0)
+def _floored(p, floor):  # type: ignore[no-untyped-def]
+    """Return what a flow law sees of a pressure, by a `PressureFloor`, and its slope."""
+    return (0.0, 0.0) if p < 0.0 and floor != 2 else (p, 1.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -270,6 +273,10 @@ def _root(drop, law):  # type: ignore[no-untyped-def]
     if law == 0 and size < ROOT_BLEND:
         a, b = 1.25 / math.sqrt(ROOT_BLEND), -0.25 / (ROOT_BLEND * ROOT_BLEND * math.sqrt(ROOT_BLEND))
         return drop * (a + b * drop * drop), a + 3.0 * b * drop * drop
+    if law == 2:
+        share, root = math.tanh(drop / TANH_DROP), math.sqrt(size)
+        steep = (1.0 - share * share) / TANH_DROP * root
+        return share * root, steep + (0.5 * abs(share) / root if size > 0.0 else 0.0)
     return math.copysign(math.sqrt(size), drop), 0.5 / math.sqrt(max(size, STEEPEST))
 
 
@@ -277,6 +284,8 @@ def _root(drop, law):  # type: ignore[no-untyped-def]
 def _port(e, d):  # type: ignore[no-untyped-def]
     """Return area, its slope by e, chord width, its slope by e: (2.15), (2.18), with `e` = d0 ∓ x."""
     rv = d.port_radius
+    if d.port_range == 2 and abs(e) > rv:
+        return math.nan, math.nan, math.nan, math.nan
     if d.port_range == 0 and abs(e) >= rv:
         return (0.0 if e > 0.0 else d.arc_holes * math.pi * rv * rv), 0.0, 0.0, 0.0
     half = math.sqrt(rv * rv - e * e)

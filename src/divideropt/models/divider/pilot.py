@@ -1,6 +1,6 @@
 """The pilot stage: flows of the grooves on one land, linear in the three pressures around it.
 
-Section 2 of the model's equations derives them again: the continuity equation (A.1) has its two leakage terms
+`docs/model/pilot.md` derives them again: the continuity equation (A.1) has its two leakage terms
 swapped, so the corrected profile along a groove is hyperbolic where the thesis has sines and cosines. Being
 linear in (Ps, Pa, Pb), the stage is folded into coefficients once a design, and the right-hand side of the
 equations of motion needs none of it.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from divideropt.models.base import FloatArray
-from divideropt.models.divider.formulations import Formulation
+from divideropt.models.divider.formulations import Formulation, Pilot
 
 GROOVE_FACTOR = 185.0
 """Laminar flow through an equilateral triangle of side b: Q = -b⁴/(185 μ) dP/dl, (A.3)."""
@@ -67,10 +67,14 @@ def pilot_sides(
     groove = _Groove.of(p, viscosity)
     near = spool_position * groove.angle
     far = groove.angle - near
-    if formulation.hyperbolic_pilot:
+    if formulation.pilot is Pilot.HYPERBOLIC:
         return _hyperbolic_side(groove, near, far), _hyperbolic_side(groove, far, near)
+    particular = formulation.pilot is Pilot.TRIGONOMETRIC
     sign_2 = 1.0 if formulation.mirrored_leakage else -1.0
-    return _trigonometric_side(groove, near, far, 1.0), _trigonometric_side(groove, far, near, sign_2)
+    return (
+        _trigonometric_side(groove, near, far, particular, 1.0),
+        _trigonometric_side(groove, far, near, particular, sign_2),
+    )
 
 
 @dataclass(frozen=True)
@@ -119,11 +123,17 @@ def _hyperbolic_side(groove: _Groove, near: float, far: float) -> PilotSide:
     )
 
 
-def _trigonometric_side(groove: _Groove, near: float, far: float, leakage_sign: float) -> PilotSide:
-    """(A.22)–(A.25), (A.29)–(A.38) and their mirror images, as coded in C.3."""
+def _trigonometric_side(
+    groove: _Groove, near: float, far: float, particular: bool, leakage_sign: float
+) -> PilotSide:
+    """(2.20)–(2.33), (2.42) and their mirror images, end flows as (A.29), (A.30): about the chambers' mean pressure.
+
+    Without the particular solution it is (A.22)–(A.25), (A.31)–(A.38) about zero, as coded in C.3.
+    """
     sin_near, cos_near = math.sin(near / groove.length), math.cos(near / groove.length)
     sin_far, cos_far = math.sin(far / groove.length), math.cos(far / groove.length)
-    ps, pa, pb = np.eye(3)
+    mean = np.array([0.0, 0.5, 0.5]) if particular else np.zeros(3)
+    ps, pa, pb = np.eye(3) - mean
     at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
     at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
     arriving = groove.conductance * (ps * sin_near - at_supply * cos_near)

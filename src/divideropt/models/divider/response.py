@@ -87,7 +87,7 @@ def respond(
     Returns:
         The response, as far as it came.
     """
-    geometry = derive_geometry(parameters, holes=formulation.arc_holes)
+    geometry = derive_geometry(parameters, holes=formulation.arc_holes, stem=formulation.stem)
     phases: list[Phase] = []
     for inputs, begin, end in scenario.phases():
         sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, formulation)

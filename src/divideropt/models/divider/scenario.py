@@ -118,12 +118,13 @@ def coefficients(
     d.variable = p["variable_discharge"] * root
     d.load_1 = p["load_discharge"] * area_1 * root
     d.load_2 = p["load_discharge"] * area_2 * root
-    d.transient = p["damping_length"] * p["variable_discharge"] * math.sqrt(2 * p["density"])
+    length = p["damping_length"] if formulation.transient_force else 0.0
+    d.transient = length * p["variable_discharge"] * math.sqrt(2 * p["density"])
     d.port_radius = geometry.port_radius
     d.port_offset = geometry.port_offset
     d.stop_position = geometry.stop_position
     d.rim_thickness = p["rim_thickness"]
-    d.seal_leakage = geometry.seal_leakage
+    d.seal_leakage = geometry.seal_leakage if formulation.end_seals else 0.0
     d.source_flow = inputs.source_flow
     d.pilot_1 = sides[0].net()
     d.pilot_2 = sides[1].net()
