@@ -8,10 +8,8 @@ import math
 import numpy as np
 
 from divideropt.models.divider import FORMULATIONS, QUANTITIES, Divider, Scenario, parameter_set, solver_settings
+from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.equilibrium import find_equilibrium, initial_guess
-from divideropt.models.divider.geometry import derive_geometry
-from divideropt.models.divider.pilot import pilot_sides
-from divideropt.models.divider.scenario import coefficients
 
 
 def main() -> None:
@@ -37,10 +35,7 @@ def main() -> None:
 def balance(formulation: str, clearance: float) -> tuple[float, float]:
     """Return QL1 + QL2 + end-seal leakage - Qs [m^3/s] and the steady-state error [%] at the equilibrium."""
     p = parameter_set("thesis_base") | {"radial_clearance": clearance}
-    reading, inputs = FORMULATIONS[formulation], Scenario().phases()[-1][0]
-    geometry = derive_geometry(p, holes=reading.arc_holes, stem=reading.stem)
-    sides = pilot_sides(p, geometry.viscosity, inputs.spool_position, reading)
-    design = coefficients(p, geometry, sides, inputs, reading)
+    design = Valve.of(p, FORMULATIONS[formulation]).under(Scenario().spans()[-1].inputs)
     rest = find_equilibrium(design, initial_guess(design))
     if rest is None:
         return math.nan, math.nan

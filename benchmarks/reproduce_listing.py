@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from divideropt.models.divider import Divider, Scenario, parameter_set, solver_settings
+from divideropt.models.divider import Divider, Scenario, load_step, parameter_set, solver_settings
 
 HERE = Path(__file__).parent
 REFERENCE = HERE.parent / "tests" / "reference"
@@ -66,7 +66,7 @@ def responses() -> None:
         ("tab33_divfitag", "thesis_optimum", 0.05),
     ):
         theirs = pd.read_csv(REFERENCE / f"listing_response_{name}.csv")
-        scenario = Scenario(settled=False, step_time=step)
+        scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=step),))
         model = Divider("listing", scenario, solver_settings("LSODA", 1e-10))
         early, late = (p.trajectory for p in model.respond(parameter_set(parameters)).phases)
         t = theirs.t.to_numpy()

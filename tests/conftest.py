@@ -1,6 +1,7 @@
 """What several tests share: designs, the record a kernel reads, and the author's data."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,10 @@ from hypothesis import settings
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from divideropt.models.divider import FORMULATIONS, QUANTITIES, Divider, Scenario, parameter_set
-from divideropt.models.divider.geometry import derive_geometry
+from divideropt.models.divider import FORMULATIONS, Divider, Scenario, parameter_set
+from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.metrics import measure
-from divideropt.models.divider.pilot import pilot_sides
 from divideropt.models.divider.response import Response
-from divideropt.models.divider.scenario import coefficients
 
 # A run must say the same twice; and the first call of a kernel compiles it, which takes longer than any deadline.
 settings.register_profile("divideropt", deadline=None, derandomize=True, database=None)
@@ -58,19 +57,18 @@ def design() -> Callable[..., dict[str, float]]:
 
 @pytest.fixture(scope="session")
 def record() -> Callable[..., NDArray[np.record]]:
-    """`record(parameters, formulation, phase=-1, scenario)`: what the kernel reads, shape (1,)."""
+    """`record(parameters, formulation, phase=-1, scenario, **options)`: what the kernel reads, shape (1,)."""
 
     def make(
         parameters: dict[str, float],
         formulation: str = "conservative",
         phase: int = -1,
         scenario: Scenario | None = None,
+        **options: Any,
     ) -> NDArray[np.record]:
-        reading = FORMULATIONS[formulation]
-        inputs = (scenario or Scenario()).phases()[phase][0]
-        geometry = derive_geometry(parameters, holes=reading.arc_holes, stem=reading.stem)
-        sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, reading)
-        return coefficients(parameters, geometry, sides, inputs, reading)
+        chosen = scenario or Scenario()
+        reading = replace(FORMULATIONS[formulation], **options)
+        return Valve.of(parameters, reading).over(chosen.spans()[phase], chosen.source_flow)
 
     return make
 
@@ -81,7 +79,7 @@ def measured() -> Callable[..., dict[str, Any]]:
 
     def run(model: Divider, parameters: dict[str, float], response: Response | None = None) -> dict[str, Any]:
         row, verdict = measure(response or model.respond(parameters))
-        named = dict(zip(QUANTITIES, row.tolist(), strict=True))
+        named = dict(zip(model.quantities, row.tolist(), strict=True))
         return named | {"outcome": verdict.outcome, "text": verdict.text}
 
     return run

@@ -5,6 +5,7 @@ import pytest
 from divideropt.campaign.load import parse_campaign
 from divideropt.errors import FileMistakes
 from divideropt.models.divider.parameters import PARAMETERS, parameter_set
+from divideropt.models.divider.scenario import load_step
 from divideropt.models.divider.tolerances import DEFAULT_MAX_STEPS, default_atol
 from divideropt.ode import SolverSettings
 from divideropt.strategies import NSGA2, ComplexMethod
@@ -71,7 +72,7 @@ def test_the_default_model_is_the_standard_test():
         0.5,
         (10e6, 10e6),
     )
-    assert (scenario.step_load, scenario.step_pressure, scenario.step_time) == (1, 15e6, 0.0)
+    assert scenario.events == (load_step(1, 15e6),)
     assert (scenario.settled, scenario.end_time, scenario.accumulation_time) == (True, 1.0, 0.2)
     assert model.solver.to_settings() == SolverSettings("LSODA", 1e-4, default_atol(1e-4), DEFAULT_MAX_STEPS)
     assert model.formulation == "conservative"
@@ -81,8 +82,8 @@ def test_the_default_model_is_the_standard_test():
 def test_a_cold_start():
     text = edited(("{start: settled}", "{start: cold, step: {load: 2, to: 12 MPa, at: 50 ms}, end: 0.6 s}"))
     scenario = parse_campaign(text).model.scenario.to_scenario()
-    assert (scenario.settled, scenario.step_time, scenario.end_time) == (False, 0.05, 0.6)
-    assert (scenario.step_load, scenario.step_pressure) == (2, 12e6)
+    assert (scenario.settled, scenario.end_time) == (False, 0.6)
+    assert scenario.events == (load_step(2, 12e6, at=0.05),)
     assert parse_campaign(text.replace(", end: 0.6 s", "")).model.scenario.end == 1.0
 
 

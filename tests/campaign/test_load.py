@@ -49,7 +49,7 @@ def test_the_campaign_of_the_thesis_is_the_authors():
     campaign = load_campaign(CAMPAIGNS / "thesis.yaml")
     scenario = campaign.model.scenario.to_scenario()
     assert (campaign.model.formulation, scenario.settled) == ("listing", False)
-    assert (scenario.step_time, scenario.end_time) == (0.05, 1.0)
+    assert (scenario.last_event_time, scenario.end_time) == (0.05, 1.0)
     assert campaign.variables["groove_width"] == (0.6e-3, 2e-3)
     assert {name: (o.goal, o.weight) for name, o in campaign.objectives.items()} == {
         "steady_state_error": (0.5, 3.0),

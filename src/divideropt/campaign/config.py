@@ -13,6 +13,7 @@ from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, b
 from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.campaign.worst_case import worst_case_rules
 from divideropt.models import Parameter, Quantity
 
 MOST_WORKERS = 256
@@ -37,6 +38,8 @@ class ObjectiveConfig(Section):
     """F* of (3.24), in the quantity's unit."""
     weight: Annotated[float, Measure("", POSITIVE)] = 1.0
     """w of (3.24)."""
+    worst_of: tuple[str, ...] = ()
+    """Scenarios over which the quantity's largest value counts, by name; `scenario` is the model's own."""
 
 
 class ConstraintConfig(Section):
@@ -46,6 +49,8 @@ class ConstraintConfig(Section):
     """Lower bound, in the quantity's unit."""
     max: Annotated[float, GivenMeasure()] | None = None
     """Upper bound, in the quantity's unit."""
+    worst_of: tuple[str, ...] = ()
+    """Scenarios in all of which the bounds are kept, by name; `scenario` is the model's own."""
 
     @model_validator(mode="after")
     def _bounds(self) -> Self:
@@ -63,6 +68,18 @@ class ParallelConfig(Section):
     """Processes at a time."""
     backend: Annotated[str, OneOf("backend", _BACKENDS)] = "loky"
     """`loky`: worker processes; `sequential`: none."""
+
+
+class VerificationConfig(Section):
+    """Which front points `divideropt run` simulates again by the model's reference, and what counts as the same.
+
+    The extremes of each objective and the points nearest the goals always are; `divideropt verify` does all.
+    """
+
+    sample: Annotated[int, Field(strict=True, ge=0, le=10**6)] = 50
+    """How many of the other points of the combined front, drawn at random with a fixed seed."""
+    tolerance: Annotated[float, Measure("%", POSITIVE)] = 1.0
+    """Largest deviation of an objective from the reference's, of which it is a share."""
 
 
 def _name(value: object) -> str:
@@ -165,6 +182,8 @@ class Campaign(Section):
     """Where the hypervolume is measured from: nothing, or a value for every objective."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    verification: VerificationConfig = VerificationConfig()
+    """Which front points are simulated again."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 
@@ -176,6 +195,7 @@ class Campaign(Section):
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
+        yield from worst_case_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
             given = objective.get("goal") if isinstance(objective, Mapping) else None

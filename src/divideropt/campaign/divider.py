@@ -1,20 +1,20 @@
 """The `model` section of a campaign for the flow divider: parameters, scenario, solver."""
 
-from collections.abc import Iterator, Mapping
-from types import MappingProxyType
-from typing import Annotated, Any
+import re
+from collections.abc import Mapping
+from typing import Annotated
 
-from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema
-from pydantic_core import InitErrorDetails
+from pydantic import AfterValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
 from divideropt.campaign import schemas
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf, Tables, by_name, measure_of
-from divideropt.campaign.sections import Section, collect, mistake, show
+from divideropt.campaign.scenario import ScenarioConfig
+from divideropt.campaign.sections import Section, collect, show
 from divideropt.models import Domain
 from divideropt.models.divider.formulations import FORMULATIONS
 from divideropt.models.divider.parameters import PARAMETER_SETS, PARAMETERS, parameter_set
-from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.scenario import Scenario
+from divideropt.models.divider.scenarios import BASE, quantities_by_event_count
 from divideropt.models.divider.tolerances import (
     DEFAULT_MAX_STEPS,
     DEFAULT_METHOD,
@@ -24,79 +24,38 @@ from divideropt.models.divider.tolerances import (
 )
 from divideropt.ode import METHODS, SolverSettings
 
-Pressure = Annotated[float, Measure("Pa", POSITIVE)]
-Time = Annotated[float, Measure("s", POSITIVE)]
-
-DIVIDER_TABLES = Tables(PARAMETERS, QUANTITIES)
-"""The names a campaign for the divider may use."""
-
-_STARTS = MappingProxyType({"settled": "at the equilibrium before the step", "cold": "all states zero"})
-_DEFAULT_END = 1.0
+_LOSSES = {"none": "as section 2.3 assumes", "entrance": "`groove_loss_factor` velocity heads, at both ends"}
+_RESERVED = ("worst", "least")
+_SCENARIO_NAME = re.compile(r"[a-z][a-z0-9_]{0,31}", re.ASCII)
 
 
-class StepConfig(Section):
-    """The load step."""
+def divider_tables(model: object) -> Tables:
+    """Return the names a campaign may use, which hang on its scenarios.
 
-    load: Annotated[int, Field(strict=True, ge=1, le=2)] = 1
-    """Which load steps."""
-    to: Pressure = 15e6
-    """Its steady pressure after the step."""
-    at: Time | None = None
-    """When, for a cold start; a settled one begins with the step."""
+    Args:
+        model: The `model` section as written, right or wrong.
+    """
+    section = model if isinstance(model, Mapping) else {}
+    others = section.get("scenarios")
+    named = others if isinstance(others, Mapping) else {}
+    scenarios = {BASE: section.get("scenario"), **{str(name): raw for name, raw in named.items()}}
+    return Tables(PARAMETERS, quantities_by_event_count({name: _event_count(raw) for name, raw in scenarios.items()}))
 
 
-class ScenarioConfig(Section):
-    """What happens to the valve (section 3.1 of the thesis)."""
+def _event_count(scenario: object) -> int:
+    events = scenario.get("events") if isinstance(scenario, Mapping) else None
+    return max(len(events), 1) if isinstance(events, list | tuple) else 1
 
-    source_flow: Annotated[float, Measure("m^3/s", POSITIVE)] = 1e-3
-    """Qs."""
-    spool_position: Annotated[float, Measure("", Domain(0.0, 1.0, open_lower=True, open_upper=True))] = 0.5
-    """φ/φ0, the angle that sets the ratio."""
-    load_pressures: tuple[Pressure, Pressure] = (10e6, 10e6)
-    """Steady load pressures before the step, by which the load orifices are sized."""
-    step: StepConfig = StepConfig()
-    """The load step."""
-    start: Annotated[str, OneOf("start", _STARTS)] = "settled"
-    """`settled`: at the equilibrium before the step; `cold`: all states zero."""
-    horizon: Time | None = Field(default_factory=lambda data: _end_if(data, "settled"))
-    """How long a settled start is simulated, from the step on; 1 s where not given."""
-    end: Time | None = Field(default_factory=lambda data: _end_if(data, "cold"))
-    """When the simulation of a cold start ends; 1 s where not given."""
-    accumulation_time: Time = 0.2
-    """t_cum of (3.8), (3.11), (3.12)."""
 
-    def to_scenario(self) -> Scenario:
-        """Return what the model simulates."""
-        return Scenario(
-            source_flow=self.source_flow,
-            spool_position=self.spool_position,
-            load_pressures=self.load_pressures,
-            step_load=self.step.load,
-            step_pressure=self.step.to,
-            settled=self.start == "settled",
-            step_time=self.step.at or 0.0,
-            end_time=self.horizon or self.end or _DEFAULT_END,
-            accumulation_time=self.accumulation_time,
-        )
-
-    @classmethod
-    def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
-        """Say which times go with which start."""
-        yield from _accumulated_by_the_end(raw)
-        step = raw.get("step") or {}
-        at = step.get("at") if isinstance(step, Mapping) else None
-        if raw.get("start", "settled") == "settled":
-            if at is not None:
-                sentence = "a settled start begins with the step; delete `at`, or write start: cold"
-                yield mistake(("step", "at"), sentence, at_key=True)
-            if raw.get("end") is not None:
-                yield mistake(("end",), "a settled start lasts its `horizon`; rename `end`", at_key=True)
-        elif raw["start"] == "cold":
-            if at is None:
-                yield mistake(("step", "at"), "a cold start needs the time of the step; add `at: 50 ms` to the step")
-            if raw.get("horizon") is not None:
-                yield mistake(("horizon",), "a cold start runs to its `end`; rename `horizon`", at_key=True)
-            yield from _end_after_step(raw.get("end"), at)
+def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConfig]:
+    for name in scenarios:
+        if name == BASE:
+            raise ValueError(f"{BASE!r} is the name of the scenario above; give this one another")
+        if not _SCENARIO_NAME.fullmatch(name):
+            raise ValueError(f"{show(name)} cannot name a scenario; use 1 to 32 of a-z, 0-9 and _, a letter first")
+        if name in _RESERVED or name.startswith("event_"):
+            raise ValueError(f"{show(name)} already means something in a column's name; give the scenario another")
+    return scenarios
 
 
 class SolverConfig(Section):
@@ -136,8 +95,12 @@ class DividerConfig(Section):
         WithJsonSchema(schemas.parameters()),
     ] = Field(default_factory=dict)
     """Parameters that differ from the set."""
+    groove_loss: Annotated[str, OneOf("groove loss", _LOSSES)] = "none"
+    """What a pilot groove's entrance and exit take off its pressure drop."""
     scenario: ScenarioConfig = Field(default_factory=ScenarioConfig)
     """What happens to the valve."""
+    scenarios: Annotated[Mapping[str, ScenarioConfig], AfterValidator(_named)] = Field(default_factory=dict)
+    """What else happens to each design, by names for `worst_of`; each complete in itself."""
     solver: SolverConfig = Field(default_factory=SolverConfig)
     """How the response is integrated."""
 
@@ -147,41 +110,12 @@ class DividerConfig(Section):
 
     def tables(self) -> Tables:
         """Return the model's parameters and quantities by name."""
-        return DIVIDER_TABLES
+        counts = {name: len(scenario.events) for name, scenario in self.all_scenarios().items()}
+        return Tables(PARAMETERS, quantities_by_event_count(counts))
 
-
-def _end_if(data: Mapping[str, Any], start: str) -> float | None:
-    return _DEFAULT_END if data.get("start") == start else None
-
-
-def _accumulated_by_the_end(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
-    step = raw.get("step") or {}
-    cold = raw.get("start") == "cold"
-    at = step.get("at") if cold and isinstance(step, Mapping) else None
-    end = raw.get("end" if cold else "horizon")
-    try:
-        begin = 0.0 if at is None else Measure("s").read(at)
-        last = _DEFAULT_END if end is None else Measure("s").read(end)
-        needed = Measure("s").read(raw.get("accumulation_time", "0.2 s"))
-    except ValueError:  # has its own mistake
-        return
-    if begin < last < (begin + needed) * (1 - 1e-9):
-        where = "accumulation_time" if "accumulation_time" in raw else "end" if cold else "horizon"
-        sentence = (
-            f"the simulation ends {last - begin:g} s after the step, before the accumulation time of {needed:g} s"
-        )
-        yield mistake((where,), f"{sentence}; simulate longer, or accumulate for less")
-
-
-def _end_after_step(end: object, at: object) -> Iterator[InitErrorDetails]:
-    try:
-        last = _DEFAULT_END if end is None else Measure("s").read(end)
-        step = Measure("s").read(at)
-    except ValueError:  # has its own mistake
-        return
-    if last <= step:
-        where = ("step", "at") if end is None else ("end",)
-        yield mistake(where, f"the simulation ends at {last:g} s, not after the step at {step:g} s; end it later")
+    def all_scenarios(self) -> dict[str, Scenario]:
+        """Return every scenario by name, that of `scenario` first."""
+        return {name: s.to_scenario() for name, s in {BASE: self.scenario, **self.scenarios}.items()}
 
 
 def _atol(value: object, rtol: float) -> tuple[float, ...]:

@@ -59,16 +59,21 @@ def _measures(values: Mapping[str, float], table: Mapping[str, Any]) -> dict[str
 
 def _sections(
     sections: Mapping[str, ObjectiveConfig] | Mapping[str, ConstraintConfig], table: Mapping[str, Quantity]
-) -> dict[str, dict[str, str | float]]:
-    """Write objectives or constraints; every field but the weight is in the quantity's unit."""
+) -> dict[str, dict[str, Any]]:
+    """Write objectives or constraints."""
     return {
         name: {
-            field: value if field == "weight" else measure_of(table[name]).write(value)
+            field: _written(field, value, table[name])
             for field, value in section
-            if value is not None
+            if value is not None and value != ()
         }
         for name, section in sections.items()
     }
+
+
+def _written(field: str, value: Any, quantity: Quantity) -> Any:
+    """Write a field of an objective or constraint; all but two are in the quantity's unit."""
+    return {"weight": value, "worst_of": value}.get(field) or measure_of(quantity).write(value)
 
 
 def _yaml(data: dict[str, Any]) -> str:

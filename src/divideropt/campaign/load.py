@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from divideropt.campaign.config import Campaign, names_plugin
-from divideropt.campaign.divider import DIVIDER_TABLES
+from divideropt.campaign.divider import divider_tables
 from divideropt.campaign.fields import Tables
 from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import Document, KeyPath, read_document, read_text
@@ -85,7 +85,7 @@ def _tables(document: Document) -> Tables:
     data = document.data
     model: Any = data.get("model") if isinstance(data, Mapping) else None
     if not names_plugin(model):
-        return DIVIDER_TABLES
+        return divider_tables(model)
     options = model.get("options", {})
     if document.mistakes or not isinstance(options, Mapping):
         return Tables()  # nothing is imported on the word of a file that is refused anyway

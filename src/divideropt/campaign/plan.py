@@ -1,14 +1,17 @@
 """A campaign to what is run: the problem, and one run a strategy and seed. Pure."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
-from divideropt.models import Model
+from divideropt.campaign.worst_case import gathered_name, worst_cases
+from divideropt.models import Model, Quantity
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import Divider
+from divideropt.models.divider.scenarios import BASE, Scenarios
 from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
 from divideropt.strategies import Strategy
 
@@ -42,9 +45,21 @@ def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
 def build_model(campaign: Campaign) -> Model:
     """Make the campaign's model."""
     config = campaign.model
-    if isinstance(config, DividerConfig):
-        return Divider(config.formulation, config.scenario.to_scenario(), config.solver.to_settings())
-    return config.make()
+    if not isinstance(config, DividerConfig):
+        return config.make()
+    models = {
+        name: Divider(config.formulation, scenario, config.solver.to_settings(), config.groove_loss == "entrance")
+        for name, scenario in config.all_scenarios().items()
+    }
+    worst = worst_cases(campaign)
+    return Scenarios(models, worst) if worst or len(models) > 1 else models[BASE]
+
+
+def base_divider(model: Model) -> Divider | None:
+    """Return the divider under the campaign's own scenario, or None where the model is another."""
+    if isinstance(model, Scenarios):
+        return model.base
+    return model if isinstance(model, Divider) else None
 
 
 def build_problem(campaign: Campaign) -> Problem:
@@ -57,9 +72,24 @@ def build_problem(campaign: Campaign) -> Problem:
         space=DesignSpace(
             tuple(Variable(model.parameters[name], *bounds) for name, bounds in campaign.variables.items())
         ),
-        objectives=tuple(Objective(quantities[name], o.goal, o.weight) for name, o in campaign.objectives.items()),
-        constraints=tuple(Constraint(quantities[name], c.min, c.max) for name, c in campaign.constraints.items()),
+        objectives=tuple(
+            Objective(quantities[gathered_name(name, o.worst_of)], o.goal, o.weight)
+            for name, o in campaign.objectives.items()
+        ),
+        constraints=tuple(_constraints(campaign, quantities)),
     )
+
+
+def _constraints(campaign: Campaign, quantities: Mapping[str, Quantity]) -> Iterator[Constraint]:
+    """Make the constraints; the two bounds of one over several scenarios are on two quantities."""
+    for name, c in campaign.constraints.items():
+        if not c.worst_of:
+            yield Constraint(quantities[name], c.min, c.max)
+            continue
+        if c.min is not None:
+            yield Constraint(quantities[gathered_name(name, c.worst_of, least=True)], c.min, None)
+        if c.max is not None:
+            yield Constraint(quantities[gathered_name(name, c.worst_of)], None, c.max)
 
 
 def reference_of(campaign: Campaign) -> FloatArray | None:

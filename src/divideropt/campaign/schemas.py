@@ -24,17 +24,18 @@ def variables() -> Schema:
 
 def objectives() -> Schema:
     """Goals and weights of quantities."""
-    return _mapping("What is minimised.", _each(_objective), 1)
+    return _prefixable(_mapping("What is minimised.", _each(_objective), 1))
 
 
 def constraints() -> Schema:
     """Bounds of quantities."""
-    return _mapping("What a feasible design keeps; bounds are inclusive.", _each(_constraint))
+    return _prefixable(_mapping("What a feasible design keeps; bounds are inclusive.", _each(_constraint)))
 
 
 def reference_point() -> Schema:
     """Values of quantities."""
-    return _mapping("Where the hypervolume is measured from: a value for every objective.", _each(_value))
+    description = "Where the hypervolume is measured from: a value for every objective."
+    return _prefixable(_mapping(description, _each(_value)))
 
 
 def tolerances() -> Schema:
@@ -43,6 +44,11 @@ def tolerances() -> Schema:
     listed = {"type": "array", "items": {"type": "string"}, "minItems": len(states), "maxItems": len(states)}
     description = "Absolute tolerances; rtol × a scale of the state where not given."
     return {"description": description, "anyOf": [_mapping("By state.", states), listed]}
+
+
+def _prefixable(schema: Schema) -> Schema:
+    """Let names begin with an event or a scenario, which the schema cannot know: `event_1.settling_time`."""
+    return {**schema, "patternProperties": {r"^[a-z][a-z0-9_]*\.[a-z]": {}}}
 
 
 def _each(describe: Callable[[Quantity], Schema]) -> Schema:
@@ -76,13 +82,23 @@ def _range(parameter: Parameter) -> Schema:
 
 def _objective(quantity: Quantity) -> Schema:
     weight = Measure("", POSITIVE).schema("w of (3.24)")
-    section = _mapping(quantity.description, {"goal": _or_null(_value(quantity)), "weight": weight})
+    section = _mapping(
+        quantity.description, {"goal": _or_null(_value(quantity)), "weight": weight, "worst_of": _worst_of()}
+    )
     return {**section, "type": ["object", "null"]}
 
 
 def _constraint(quantity: Quantity) -> Schema:
     bound = _or_null(_value(quantity))
-    return _mapping(quantity.description, {"min": bound, "max": bound}, 1)
+    return _mapping(quantity.description, {"min": bound, "max": bound, "worst_of": _worst_of()}, 1)
+
+
+def _worst_of() -> Schema:
+    return {
+        "type": "array",
+        "description": "Scenarios of which the worst counts: names of `model.scenarios`, or `scenario`.",
+        "items": {"type": "string"},
+    }
 
 
 def _or_null(schema: Schema) -> Schema:

@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 
 from divideropt.campaign.config import Campaign
-from divideropt.campaign.plan import build_model
+from divideropt.campaign.plan import base_divider, build_model
 from divideropt.errors import UsageError
 from divideropt.models import Outcome, Verdict
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import PARAMETERS, Divider
+from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Response
 from divideropt.units import parse_measure
@@ -62,8 +62,8 @@ def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
     Raises:
         UsageError: A setting is no parameter, or out of its domain; or the model has no response to show.
     """
-    model = build_model(campaign)
-    if not isinstance(model, Divider):
+    model = base_divider(build_model(campaign))
+    if model is None:
         raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
     parameters = campaign.model.base_parameters() | dict(_read(setting) for setting in settings)
     try:
@@ -81,7 +81,7 @@ def _table(response: Response) -> pd.DataFrame:
         if phase.trajectory is not None:
             times = _times(phase.trajectory.edges)
             states = phase.trajectory.at(times)
-            blocks.append(np.column_stack([times, states, phase.load_flows(states)]))
+            blocks.append(np.column_stack([times, states, phase.load_flows(states, times)]))
     return pd.DataFrame(np.concatenate(blocks), columns=list(COLUMNS))
 
 

@@ -1,5 +1,5 @@
 """What is optimised."""
 
-from divideropt.models.base import Domain, Model, Outcome, Parameter, Quantity, Verdict
+from divideropt.models.base import Domain, Model, Outcome, Parameter, Quantity, Verdict, Verifiable
 
-__all__ = ["Domain", "Model", "Outcome", "Parameter", "Quantity", "Verdict"]
+__all__ = ["Domain", "Model", "Outcome", "Parameter", "Quantity", "Verdict", "Verifiable"]

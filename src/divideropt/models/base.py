@@ -7,13 +7,13 @@ Anything with these three can be optimised, a user's own class included, which a
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from divideropt.ode.base import FloatArray
 
-__all__ = ["Domain", "FloatArray", "Model", "Outcome", "Parameter", "Quantity", "Verdict"]
+__all__ = ["Domain", "FloatArray", "Model", "Outcome", "Parameter", "Quantity", "Verdict", "Verifiable"]
 
 
 @dataclass(frozen=True)
@@ -82,6 +82,7 @@ class Quantity:
         description: What it is, in a line.
         scale: A typical size, in `unit`; divides a violation where the bound is 0.
         signed: Whether objectives and constraints act on its magnitude, while tables hold it signed.
+        logical: Whether it is 1 or 0, and tables say true or false.
     """
 
     name: str
@@ -90,6 +91,7 @@ class Quantity:
     description: str
     scale: float
     signed: bool = False
+    logical: bool = False
 
 
 class Outcome(StrEnum):
@@ -146,4 +148,13 @@ class Model(Protocol):
         Returns:
             The quantities, shape (n, m), NaN where one is not defined, and a verdict a row.
         """
+        ...
+
+
+@runtime_checkable
+class Verifiable(Model, Protocol):
+    """A model that can be checked: it offers the same equations solved another way, and far more exactly."""
+
+    def reference(self) -> Model:
+        """Return the model by which this one is verified, with the same parameters and quantities."""
         ...

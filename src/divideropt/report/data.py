@@ -14,6 +14,7 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.models.base import FloatArray
+from divideropt.models.divider import Event
 from divideropt.problem import Problem
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
@@ -223,7 +224,7 @@ def _setting(campaign: Campaign) -> tuple[tuple[str, str], ...]:
         return (("Model", model.kind),)
     scenario, solver = model.scenario.to_scenario(), model.solver
     loads = " and ".join(f"{pressure / 1e6:g}" for pressure in scenario.load_pressures)
-    start = "from rest" if scenario.settled else f"from an empty valve, at {scenario.step_time * 1e3:g} ms"
+    start = "from rest" if scenario.settled else "from an empty valve"
     return (
         ("Model", "divider: the adjustable-ratio flow divider"),
         ("Formulation", model.formulation),
@@ -231,11 +232,21 @@ def _setting(campaign: Campaign) -> tuple[tuple[str, str], ...]:
         (
             "Scenario",
             f"source flow {scenario.source_flow * 6e4:g} L/min, spool position φ/φ0 = {scenario.spool_position:g}, "
-            f"loads {loads} MPa; load {scenario.step_load} steps to {scenario.step_pressure / 1e6:g} MPa {start}; "
+            f"loads {loads} MPa; {start}; {'; '.join(_event_words(event) for event in scenario.events)}; "
             f"end at {scenario.end_time:g} s",
         ),
         ("Solver", f"{solver.method}, relative tolerance {solver.rtol:g}, at most {solver.max_steps} steps"),
     )
+
+
+def _event_words(event: Event) -> str:
+    changes = [f"load {i} to {p / 1e6:g} MPa" for i, p in enumerate(event.load_pressures, start=1) if p is not None]
+    if event.source_flow is not None:
+        changes.append(f"source flow to {event.source_flow * 6e4:g} L/min")
+    if event.spool_position is not None:
+        changes.append(f"φ/φ0 to {event.spool_position:g}")
+    over = f" over {event.over * 1e3:g} ms" if event.over > 0.0 else ""
+    return f"at {event.at * 1e3:g} ms {', '.join(changes)}{over}"
 
 
 def _parameter_words(model: DividerConfig) -> str:

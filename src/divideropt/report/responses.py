@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from divideropt.campaign.plan import base_divider
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import PARAMETER_SETS, Divider, parameter_set
+from divideropt.models.divider import PARAMETER_SETS, parameter_set
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Phase, Response
 from divideropt.ode import SolverStatus
@@ -44,11 +45,11 @@ _MS, _LITRES_PER_MINUTE = 1e3, 6e4
 
 @dataclass(frozen=True)
 class StepResponse:
-    """The load flows of one design over the step.
+    """The load flows of one design over the events.
 
     Attributes:
         name: The design's id, or the name of a parameter set.
-        times: Since the step [ms].
+        times: Since the first event [ms].
         flows: QL1 and QL2 [L/min], each as long as `times`.
         busy: When both flows are within `SETTLED` of their final values for good [ms].
     """
@@ -85,8 +86,8 @@ def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Des
     Returns:
         The responses, or None where the model is not the divider and has none.
     """
-    model = problem.model
-    if not isinstance(model, Divider):
+    model = base_divider(problem.model)
+    if model is None:
         return None
     sets, notes = [], []
     for name in PARAMETER_SETS:
@@ -121,26 +122,25 @@ def _parameters(problem: Problem, design: Design) -> Mapping[str, float]:
 
 def _curve(name: str, response: Response) -> StepResponse | None:
     """Reduce a response to what is drawn; None where the simulation did not get to the end."""
-    first, last = response.phases[0], response.phases[-1]
-    run = last.trajectory
-    if run is None or run.status is not SolverStatus.FINISHED:
+    first, *later = response.phases
+    if any(p.trajectory is None or p.trajectory.status is not SolverStatus.FINISHED for p in later):
         return None
-    step = response.scenario.step_time
-    lead = LEAD * (response.scenario.end_time - step)
-    before = _before(first, step, lead)
-    after = _sampled(last, float(run.edges[0]), float(run.edges[-1]), MOST_POINTS)
-    times = np.concatenate([before[0], after[0]]) - step
+    begin = response.scenario.events[0].at
+    before = _before(first, begin, LEAD * (response.scenario.end_time - begin))
+    parts = [_sampled(phase, phase.span.begin, phase.span.end, MOST_POINTS) for phase in later]
+    after = np.concatenate([times for times, _ in parts]) - begin, np.concatenate([flows for _, flows in parts])
+    times = np.concatenate([before[0] - begin, after[0]])
     flows = np.concatenate([before[1], after[1]])
     return StepResponse(
         name,
         tuple(rounded(t * _MS) for t in times),
         (_flows(flows[:, 0]), _flows(flows[:, 1])),
-        rounded(_busy(after[0] - step, after[1]) * _MS),
+        rounded(_busy(*after) * _MS),
     )
 
 
 def _before(phase: Phase, step: float, lead: float) -> tuple[FloatArray, FloatArray]:
-    """Times and flows before the step: at rest, or the end of the way there."""
+    """Times and flows before the first event: at rest, or the end of the way there."""
     if phase.trajectory is not None:
         return _sampled(phase, max(step - lead, float(phase.trajectory.edges[0])), step, LEAD_POINTS)
     if phase.end is None:
@@ -155,7 +155,7 @@ def _sampled(phase: Phase, begin: float, end: float, count: int) -> tuple[FloatA
     edges = np.unique(np.concatenate([[begin], edges[(edges > begin) & (edges < end)], [end]]))
     shares = np.arange(POINTS_PER_STEP) / POINTS_PER_STEP
     times = np.append((edges[:-1, None] + shares * np.diff(edges)[:, None]).ravel(), edges[-1])
-    flows = phase.load_flows(phase.trajectory.at(times))
+    flows = phase.load_flows(phase.trajectory.at(times), times)
     size = np.abs(flows).max(axis=0)
     kept = thin(times, flows / np.where(size > 0.0, size, 1.0), count, FINE)
     return times[kept], flows[kept]

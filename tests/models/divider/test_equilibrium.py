@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from divideropt.models.divider import Scenario, solver_settings
+from divideropt.models.divider import Scenario, load_step, solver_settings
 from divideropt.models.divider.equilibrium import (
     find_equilibrium,
     initial_guess,
@@ -107,8 +107,8 @@ def test_where_it_is_does_not_depend_on_where_the_search_begins(design, record) 
 
 def test_the_valve_is_symmetric(design, record) -> None:
     p = design(centred_opening=0.4)
-    one = record(p, scenario=Scenario(load_pressures=(10e6, 10e6), step_load=1, step_pressure=15e6))
-    two = record(p, scenario=Scenario(load_pressures=(10e6, 10e6), step_load=2, step_pressure=15e6))
+    one = record(p, scenario=Scenario(events=(load_step(1, 15e6),)))
+    two = record(p, scenario=Scenario(events=(load_step(2, 15e6),)))
     np.testing.assert_allclose(
         found_from_guess(two).state,
         MIRROR_SIGNS * found_from_guess(one).state[MIRROR],

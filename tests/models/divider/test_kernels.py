@@ -11,7 +11,19 @@ from divideropt.models.divider import Scenario, kernels
 from divideropt.models.divider.formulations import OrificeLaw, PortRange, Stop
 from divideropt.models.divider.kernels import N_STATES, ROOT_BLEND, STATES, jacobian, rates, signed_root
 
-NESTED = ("motion", "_floored", "_root", "_port", "_stop_force")
+NESTED = (
+    "motion",
+    "fold_pilot",
+    "fold_side",
+    "load_coefficients",
+    "_gather",
+    "_excess",
+    "_carry",
+    "_floored",
+    "_root",
+    "_port",
+    "_stop_force",
+)
 FORMULATIONS = ("conservative", "text", "listing")
 
 STATE_SCALES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 0.1, 1e-3, 1e7, 1e7])

@@ -6,9 +6,9 @@ import pytest
 from scipy.integrate import trapezoid
 
 from divideropt.models.base import Outcome
-from divideropt.models.divider import Divider, Scenario, solver_settings
+from divideropt.models.divider import Divider, Scenario, load_step, solver_settings
 
-AUTHORS_TEST = Scenario(settled=False, step_time=0.05, end_time=1.0)  # divfitag.m
+AUTHORS_TEST = Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),), end_time=1.0)  # divfitag.m
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def completed(reference, listing_design, measured) -> pd.DataFrame:
 
 def as_the_author_summed(response) -> tuple[float, float]:
     """Settling time and dynamic error as in C.5: from 1000 samples of the load flows, with trapezia."""
-    step = response.scenario.step_time
+    step = response.scenario.last_event_time
     times = np.concatenate([np.linspace(0, 0.99 * step, 333), np.logspace(np.log10(0.99001 * step), 0.0, 667)])
     before, after = response.phases
     early = times < step

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import trapezoid
 
 from divideropt.models.base import Outcome
-from divideropt.models.divider import QUANTITIES, Divider, Scenario, solver_settings
+from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step, solver_settings
 from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.metrics import measure
 
@@ -85,8 +85,7 @@ def sampled(response) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     states = phase.trajectory.at(times)
     p, s = response.parameters, response.scenario
     flows = []
-    loads = [s.load_pressures[0], s.load_pressures[1]]
-    loads[s.step_load - 1] = s.step_pressure
+    loads = s.spans()[-1].inputs.load_pressures
     for column, pressure in zip((7, 8), loads, strict=True):
         # (3.3) with the area that passes half the source flow at the stated pressure: Cd and ρ cancel.
         flows.append(s.source_flow / 2 * np.sqrt(np.maximum(states[:, column], 0.0) / pressure))
@@ -96,10 +95,10 @@ def sampled(response) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 CASES = {
     "settled": (Scenario(), {}),
-    "cold": (Scenario(settled=False, step_time=0.05), {}),
+    "cold": (Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),)), {}),
     "overshoot": (Scenario(), OVERSHOOTING),
     "rotated": (Scenario(spool_position=0.4, accumulation_time=0.137), {"centred_opening": 0.4}),
-    "other load": (Scenario(step_load=2, step_pressure=18e6), {"fixed_area_ratio": 1.3}),
+    "other load": (Scenario(events=(load_step(2, 18e6),)), {"fixed_area_ratio": 1.3}),
     "friction": (Scenario(), {"coulomb_friction": 10.0}),
 }
 
@@ -113,11 +112,10 @@ def test_metrics_against_brute_force(measured, design, case) -> None:
     q = measured(model, design(**changes))
     assert q["outcome"] is Outcome.OK
     times, states, flows = sampled(response)
-    begin, source = scenario.step_time, scenario.source_flow
+    begin, source = scenario.last_event_time, scenario.source_flow
     at_rest = case in {"settled", "overshoot", "rotated", "other load"}
     final_state = response.phases[-1].rest.state if at_rest else states[-1]
-    load = [*scenario.load_pressures]
-    load[scenario.step_load - 1] = scenario.step_pressure
+    load = scenario.spans()[-1].inputs.load_pressures
     final = source / 2 * np.sqrt(final_state[7:9] / np.array(load))
 
     ratio = changes.get("fixed_area_ratio", 1.0) * np.sqrt(1 / scenario.spool_position - 1)
@@ -183,7 +181,7 @@ def test_an_overshoot_cancels_in_the_signed_error_only(measured, design) -> None
 
 
 def test_a_flow_that_never_leaves_its_band_settles_at_once(measured, design) -> None:
-    q = measured(Divider(scenario=Scenario(step_pressure=10.01e6), settings=TIGHT), design())
+    q = measured(Divider(scenario=Scenario(events=(load_step(1, 10.01e6),)), settings=TIGHT), design())
     assert q["outcome"] is Outcome.OK
     assert (q["settling_time"], q["dynamic_error"], q["dynamic_error_abs"]) == (0.0, 0.0, 0.0)
 
@@ -263,7 +261,7 @@ def test_outcome_unstable(measured, design, formulation) -> None:
     assert f"{-q['stability_margin']:.4g} 1/s" in q["text"]
 
 
-@pytest.mark.parametrize("scenario", [Scenario(), Scenario(settled=False, step_time=0.05)])
+@pytest.mark.parametrize("scenario", [Scenario(), Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))])
 def test_outcome_not_completed(measured, design, scenario) -> None:
     q = outcome_of(measured, Divider("conservative", scenario, solver_settings(max_steps=30)), design())
     assert q["outcome"] is Outcome.NOT_COMPLETED
@@ -288,7 +286,7 @@ def test_outcome_unsettled_when_the_end_comes_early(measured, design) -> None:
 
 def test_outcome_unsettled_of_a_cold_start(measured, design) -> None:
     # Judged by the band around its own end: a valve that is still being filled leaves it to the last.
-    scenario = Scenario(settled=False, step_time=0.001, end_time=0.003)
+    scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=0.001),), end_time=0.003)
     q = outcome_of(measured, Divider("conservative", scenario, TIGHT), design())
     assert q["outcome"] is Outcome.UNSETTLED
     assert q["settling_time"] > 0.9 * 0.002
@@ -306,7 +304,7 @@ NO_EQUILIBRIUM = {
 
 
 def test_outcome_no_equilibrium(measured, design) -> None:
-    cold = Scenario(settled=False, step_time=0.05)
+    cold = Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))
     q = outcome_of(measured, Divider("listing", cold), design(**NO_EQUILIBRIUM))
     assert q["outcome"] is Outcome.NO_EQUILIBRIUM
     assert "after the step" in q["text"]
@@ -336,7 +334,9 @@ def test_a_rest_deep_in_the_contact_stop_is_found(measured, design) -> None:
 def test_a_response_that_is_not_a_number_has_no_metrics(measured, reference, listing_design) -> None:
     rows = reference("listing_objectives")
     row = rows[rows["id"] == 248].iloc[0]  # the author's solver gave up on it, too
-    q = measured(Divider("listing", Scenario(settled=False, step_time=0.05), TIGHT), listing_design(row))
+    q = measured(
+        Divider("listing", Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),)), TIGHT), listing_design(row)
+    )
     assert q["outcome"] is Outcome.NOT_COMPLETED
     for name in ("settling_time", "dynamic_error", "dynamic_error_abs", "dynamic_error_percent"):
         assert np.isnan(q[name]), name

@@ -23,6 +23,8 @@ DESIGNS = st.fixed_dictionaries(
 VISCOSITY = st.floats(1e-3, 0.5)
 POSITION = st.floats(0.02, 0.98)
 
+DENSITY = 900.0
+
 CONSERVATIVE, LISTING = FORMULATIONS["conservative"], FORMULATIONS["listing"]
 
 
@@ -40,7 +42,7 @@ def imbalance(side: PilotSide) -> tuple[np.ndarray, float]:
 
 @given(DESIGNS, VISCOSITY, POSITION)
 def test_what_enters_a_side_leaves_it(design, changes, viscosity, position) -> None:
-    for side in pilot_sides(design(**changes), viscosity, position, CONSERVATIVE):
+    for side in pilot_sides(design(**changes, kinematic_viscosity=viscosity / DENSITY), position, CONSERVATIVE):
         gap, size = imbalance(side)
         assert np.isfinite(size)
         assert np.abs(gap).max() <= 1e-15 * size
@@ -50,23 +52,23 @@ def test_what_enters_a_side_leaves_it(design, changes, viscosity, position) -> N
 def test_supply_and_chambers_exchange_what_they_lose(design, changes, viscosity, position) -> None:
     # The identity again, as the equations of motion see it: the source's, the flow chamber's and the end
     # chamber's gains sum to nothing, so Qs = QL1 + QL2 + end-seal leakage once all rates vanish.
-    for side in pilot_sides(design(**changes), viscosity, position, CONSERVATIVE):
+    for side in pilot_sides(design(**changes, kinematic_viscosity=viscosity / DENSITY), position, CONSERVATIVE):
         net = side.net()
         assert np.abs(net.sum(axis=0)).max() <= 2e-15 * np.abs(net).sum()
 
 
 @given(DESIGNS, VISCOSITY, POSITION)
 def test_equal_pressures_move_nothing(design, changes, viscosity, position) -> None:
-    for side in pilot_sides(design(**changes), viscosity, position, CONSERVATIVE):
+    for side in pilot_sides(design(**changes, kinematic_viscosity=viscosity / DENSITY), position, CONSERVATIVE):
         for row in vars(side).values():
             assert abs(row.sum()) <= 1e-15 * np.abs(row).sum()
 
 
 @given(DESIGNS, VISCOSITY, POSITION)
 def test_the_sides_are_mirror_images(design, changes, viscosity, position) -> None:
-    p = design(**changes)
-    side_1, side_2 = pilot_sides(p, viscosity, position, CONSERVATIVE)
-    other_1, other_2 = pilot_sides(p, viscosity, 1 - position, CONSERVATIVE)
+    p = design(**changes, kinematic_viscosity=viscosity / DENSITY)
+    side_1, side_2 = pilot_sides(p, position, CONSERVATIVE)
+    other_1, other_2 = pilot_sides(p, 1 - position, CONSERVATIVE)
     for one, other in ((side_1, other_2), (side_2, other_1)):
         for name, row in vars(one).items():
             np.testing.assert_allclose(
@@ -78,7 +80,7 @@ def test_the_sides_are_mirror_images(design, changes, viscosity, position) -> No
 def test_flows_run_down_the_pressures(design, changes, viscosity, position) -> None:
     # Supply above end chamber above flow chamber: into the groove, on along it, out.
     pressures = np.array([3.0, 1.0, 2.0])
-    for side in pilot_sides(design(**changes), viscosity, position, CONSERVATIVE):
+    for side in pilot_sides(design(**changes, kinematic_viscosity=viscosity / DENSITY), position, CONSERVATIVE):
         assert side.inlet @ pressures > 0
         assert side.outlet @ pressures > 0
         assert side.chamber_leakage @ pressures > 0
@@ -129,7 +131,7 @@ def test_flows_are_those_of_a_numerical_profile(design, changes, position, press
         "end_leakage": land * (pb * angle - integral),
         "chamber_leakage": land * (integral - pa * angle),
     }
-    side = pilot_sides(p, viscosity, position, CONSERVATIVE)[0]
+    side = pilot_sides(p, position, CONSERVATIVE)[0]
     for name, value in expected.items():
         row = getattr(side, name)
         size = float(np.abs(row) @ np.abs(pressures))
@@ -139,7 +141,7 @@ def test_flows_are_those_of_a_numerical_profile(design, changes, position, press
 def test_a_wide_clearance_neither_overflows_nor_cancels(design) -> None:
     # φ0/√c = 2000: cosh and sinh would overflow; the groove is then all boundary layer, coth = 1, 1/sinh = 0.
     p = design(radial_clearance=300e-6, groove_width=0.2e-3, spool_radius=30e-3)
-    side, _ = pilot_sides(p, 0.027, 0.5, CONSERVATIVE)
+    side, _ = pilot_sides(p, 0.5, CONSERVATIVE)
     conductance = p["groove_width"] ** 2 / 0.027 * math.sqrt(300e-6**3 / (6 * 185 * p["land_distance"]))
     np.testing.assert_allclose(side.inlet, conductance * np.array([1.0, -0.5, -0.5]), rtol=1e-13)
     np.testing.assert_allclose(side.outlet, conductance * np.array([0.0, -0.5, 0.5]), rtol=1e-13)
@@ -147,13 +149,13 @@ def test_a_wide_clearance_neither_overflows_nor_cancels(design) -> None:
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_the_listing_breaks_the_identity(design, side) -> None:
-    gap, size = imbalance(pilot_sides(design(), 0.027, 0.5, LISTING)[side])
+    gap, size = imbalance(pilot_sides(design(), 0.5, LISTING)[side])
     assert np.abs(gap).max() > 1e-7 * size  # rounding makes 1e-15 of it, see above
 
 
 def test_the_listing_mirrors_all_but_a_leakage(design) -> None:
     # C.3 has a minus before side 2's bracket in Qlbg2, where the mirror image has a plus.
-    side_1, side_2 = pilot_sides(design(), 0.027, 0.5, LISTING)
+    side_1, side_2 = pilot_sides(design(), 0.5, LISTING)
     for name in ("inlet", "arriving", "tap", "outlet", "chamber_leakage"):
         np.testing.assert_allclose(getattr(side_1, name), getattr(side_2, name), rtol=1e-13, err_msg=name)
     across = (side_1.end_leakage + side_1.chamber_leakage) / 2

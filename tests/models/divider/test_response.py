@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from divideropt.models.divider import Divider, Scenario, solver_settings
+from divideropt.models.divider import Divider, Scenario, load_step, solver_settings
 from divideropt.models.divider.kernels import STATES, rates
 from divideropt.ode import SolverStatus
 
@@ -30,7 +30,7 @@ X = STATES.index("x")
 def test_responses_of_the_authors_code(reference, design, file, base, step_time) -> None:
     rows = reference(file)
     times = rows["t"].to_numpy()
-    scenario = Scenario(settled=False, step_time=step_time, end_time=float(times[-1]))
+    scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=step_time),), end_time=float(times[-1]))
     response = Divider("listing", scenario, TIGHT).respond(design(**base))
     first, second = response.phases
     before = times <= step_time  # at the very instant the old area still applies
@@ -59,7 +59,7 @@ def test_a_settled_start_is_at_rest_until_the_step(design) -> None:
 
 
 def test_a_cold_start_is_empty_and_joins_up_at_the_step(design) -> None:
-    scenario = Scenario(settled=False, step_time=0.05)
+    scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))
     before, after = Divider("conservative", scenario, TIGHT).respond(design()).phases
     np.testing.assert_array_equal(before.trajectory.values[0, :, 0], np.zeros(9))
     np.testing.assert_allclose(after.trajectory.values[0, :, 0], before.end, rtol=1e-9, atol=1e-12)
@@ -70,7 +70,9 @@ def test_a_cold_start_is_empty_and_joins_up_at_the_step(design) -> None:
 
 def test_both_starts_end_at_one_equilibrium(design) -> None:
     settled = Divider(settings=TIGHT).respond(design()).phases[-1]
-    cold = Divider("conservative", Scenario(settled=False, step_time=0.05, end_time=1.5), TIGHT)
+    cold = Divider(
+        "conservative", Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),), end_time=1.5), TIGHT
+    )
     np.testing.assert_allclose(
         cold.respond(design()).phases[-1].rest.state, settled.rest.state, rtol=1e-9, atol=1e-15
     )
@@ -92,8 +94,18 @@ def test_polynomials_between_the_steps_solve_the_equations(design, method) -> No
 
 
 def test_a_step_on_the_other_load_is_the_mirror_image(design) -> None:
-    one = Divider(scenario=Scenario(step_load=1), settings=TIGHT).respond(design()).phases[-1].trajectory
-    two = Divider(scenario=Scenario(step_load=2), settings=TIGHT).respond(design()).phases[-1].trajectory
+    one = (
+        Divider(scenario=Scenario(events=(load_step(1, 15e6),)), settings=TIGHT)
+        .respond(design())
+        .phases[-1]
+        .trajectory
+    )
+    two = (
+        Divider(scenario=Scenario(events=(load_step(2, 15e6),)), settings=TIGHT)
+        .respond(design())
+        .phases[-1]
+        .trajectory
+    )
     times = np.linspace(0.0, 1.0, 200)
     mirrored = two.at(times)[:, [0, 2, 1, 4, 3, 5, 6, 8, 7]] * np.array([1, 1, 1, 1, 1, -1, -1, 1, 1])
     straight = one.at(times)
@@ -114,7 +126,9 @@ def test_load_flows_take_states_of_any_shape(design) -> None:
 
 def test_the_budget_is_one_of_each_phase(design) -> None:
     settings = solver_settings(max_steps=50)
-    cold = Divider("conservative", Scenario(settled=False, step_time=0.05), settings).respond(design())
+    cold = Divider("conservative", Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),)), settings).respond(
+        design()
+    )
     first, second = cold.phases
     assert first.trajectory.status is SolverStatus.STEP_BUDGET
     assert first.end is None
@@ -125,7 +139,7 @@ def test_the_budget_is_one_of_each_phase(design) -> None:
 def test_the_listing_stays_on_the_stop_it_ran_into(reference, listing_design) -> None:
     rows = reference("listing_objectives")
     jammed = rows[(rows["at_stop"] == 1) & (rows["istate"] == 2)].iloc[0]
-    scenario = Scenario(settled=False, step_time=0.05)
+    scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))
     response = Divider("listing", scenario, TIGHT).respond(listing_design(jammed))
     stop = response.geometry.stop_position
     run = response.phases[-1].trajectory

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import PortRange, Stop
 from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
+from divideropt.models.divider.record import Design
 from divideropt.ode import SolverSettings, integrate
 
 TOLERANCE = 1e-13
@@ -45,8 +46,6 @@ _XDOT, _X = STATES.index("xdot"), STATES.index("x")
 _FREE = np.array([i for i in range(N_STATES) if i != _XDOT])
 _BALANCES = np.array([i for i in range(N_STATES) if i != _X])
 _PRESSURES = np.array([i for i in range(N_STATES) if i not in (_XDOT, _X)])
-
-Design = NDArray[np.record]
 
 
 @dataclass(frozen=True)

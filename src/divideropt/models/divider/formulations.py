@@ -6,7 +6,7 @@ The thesis's printed equations, its appendix and its code disagree; `conservativ
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import IntEnum, StrEnum
+from enum import IntEnum
 from types import MappingProxyType
 
 
@@ -21,14 +21,14 @@ class OrificeLaw(IntEnum):
     """tanh(Δp/p_tan)·sqrt(abs Δp), (2.9)."""
 
 
-class Pilot(StrEnum):
+class Pilot(IntEnum):
     """Which solution of the groove's continuity equation gives the pilot flows."""
 
-    HYPERBOLIC = "hyperbolic"
+    HYPERBOLIC = 0
     """Of the corrected equation: cosh and sinh about the mean pressure of the two chambers."""
-    TRIGONOMETRIC = "trigonometric"
+    TRIGONOMETRIC = 1
     """Of (A.1) as printed: cos and sin about that mean, (2.20)-(2.33), (2.42)-(2.45)."""
-    HOMOGENEOUS = "homogeneous"
+    HOMOGENEOUS = 2
     """The same without the particular solution: about zero, (A.22)-(A.25), (A.39)-(A.42), as coded in C.3."""
 
 
@@ -80,6 +80,8 @@ class Formulation:
         transient_force: Whether the jets brake the spool over the damping length (C.3).
         pilot_bypass: Whether what flows through the grooves is taken from the source and reaches the flow chambers;
             off only to see its share of an error.
+        groove_loss: Whether a groove's entrance and exit take `groove_loss_factor` velocity heads off its drop; the
+            thesis's assumption 5 of section 2.3 is that they do not.
         orifice_law: See `OrificeLaw`.
         port_range: See `PortRange`.
         stop: See `Stop`.
@@ -99,6 +101,7 @@ class Formulation:
     stop: Stop
     pressure_floor: PressureFloor
     pilot_bypass: bool = True
+    groove_loss: bool = False
 
 
 FORMULATIONS: Mapping[str, Formulation] = MappingProxyType(

@@ -1,15 +1,17 @@
 """The equations of motion (2.8)–(2.19), (3.1)–(3.4), compiled: rates and their Jacobian in one pass.
 
 States, in order: Ps, Pa1, Pa2, Pb1, Pb2, ẋ, x, PL1, PL2 [Pa, m/s, m]. Everything a design fixes comes in one
-record of `COEFFICIENTS`; the pilot stage is in it as two 3×3 matrices. The record's options choose between the
-formulations; no equation stands twice.
+record of `COEFFICIENTS`; the pilot stage is in it as two 3×3 matrices, folded once unless the spool is turned. The
+record's options choose between the formulations; no equation stands twice.
+
+Every compiled function that another one calls is in this file: numba's cache looks at the age of a function's own
+file only, and would go on calling the old version of one that stands elsewhere.
 """
 
 import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
 
@@ -17,46 +19,6 @@ STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
 """Names of the states, in the order of a state vector."""
 
 N_STATES = len(STATES)
-
-COEFFICIENTS = np.dtype(
-    (
-        np.record,
-        [
-            ("source_gain", "f8"),  # β/Vs
-            ("chamber_gain", "f8"),  # β/Va
-            ("load_gain", "f8"),  # β/VL
-            ("bulk_modulus", "f8"),
-            ("end_volume", "f8"),  # V1o = V2o
-            ("end_area", "f8"),  # A
-            ("mass", "f8"),
-            ("viscous_friction", "f8"),  # Bf
-            ("coulomb_friction", "f8"),  # Fc
-            ("fixed_1", "f8"),  # Cdo Ao1 √(2/ρ)
-            ("fixed_2", "f8"),
-            ("variable", "f8"),  # Cdv √(2/ρ), times an area
-            ("load_1", "f8"),  # CdL AL1 √(2/ρ)
-            ("load_2", "f8"),
-            ("transient", "f8"),  # Ld Cdv √(2ρ), times a width
-            ("port_radius", "f8"),  # rv
-            ("port_offset", "f8"),  # d0
-            ("stop_position", "f8"),  # x_max
-            ("rim_thickness", "f8"),
-            ("seal_leakage", "f8"),  # Cb3
-            ("source_flow", "f8"),  # Qs
-            ("extra_force", "f8"),  # on the spool, beside those of (2.17)
-            ("pilot_1", "f8", (3, 3)),
-            ("pilot_2", "f8", (3, 3)),
-            ("arc_holes", "f8"),
-            ("chord_holes", "f8"),
-            ("rim_holes", "f8"),
-            ("orifice_law", "i8"),
-            ("port_range", "i8"),
-            ("stop", "i8"),
-            ("pressure_floor", "i8"),
-        ],
-    )
-)
-"""What the kernel reads: one design under one set of inputs, SI."""
 
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
@@ -88,7 +50,7 @@ def rates(t, y, design):  # type: ignore[no-untyped-def]
     """Return dy/dt.
 
     Args:
-        t: Time [s]; the inputs are constant between events, so it does not matter.
+        t: Time [s]; it matters only where the inputs move.
         y: State, shape (9,).
         design: `COEFFICIENTS`, shape (1,); a call with a bare record costs numba four times as much.
 
@@ -97,7 +59,7 @@ def rates(t, y, design):  # type: ignore[no-untyped-def]
     """
     out = np.empty(N_STATES)
     jac = np.zeros((N_STATES, N_STATES))
-    motion(y, design[0], out, jac)
+    motion(t, y, design[0], out, jac)
     return out
 
 
@@ -106,15 +68,16 @@ def jacobian(t, y, design):  # type: ignore[no-untyped-def]
     """Return the matrix of derivatives of the rates by the states, shape (9, 9); arguments as in `rates`."""
     out = np.empty(N_STATES)
     jac = np.zeros((N_STATES, N_STATES))
-    motion(y, design[0], out, jac)
+    motion(t, y, design[0], out, jac)
     return jac
 
 
 @njit(cache=True, error_model="numpy")
-def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
+def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
     """Fill rates and Jacobian.
 
     Args:
+        t: Time [s].
         y: State, shape (9,).
         d: A record of `COEFFICIENTS`.
         out: Receives the rates, shape (9,).
@@ -131,6 +94,17 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
     if d.stop == 1 and abs(x) > d.stop_position:  # C.3 freezes the spool
         x, x_ = math.copysign(d.stop_position, x), 0.0
         xdot = 0.0
+
+    # Inputs: as they stand, or on their way.
+    source_flow, load_1, load_2, position = d.source_flow, d.load_1, d.load_2, d.spool_position
+    p1, p2 = d.pilot_1, d.pilot_2
+    if d.moving != 0:
+        since = t - d.begin
+        source_flow += d.source_flow_rate * since
+        load_1, load_2 = load_coefficients(since, d)
+        position += d.spool_position_rate * since
+        if d.spool_position_rate != 0.0:
+            fold_pilot(position, d)
 
     # Ports: area and chord of each, with their slopes by x.
     reach_1 = x
@@ -156,15 +130,14 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
     root_2, root_2_ = _root(Pa2 - PL2, d.orifice_law)
     QL2, QL2_, QL2_x = d.variable * Av2 * root_2, d.variable * Av2 * root_2_, d.variable * Av2_x * root_2
     f, f_ = _root(PL1, d.orifice_law)
-    QLo1, QLo1_ = d.load_1 * f, d.load_1 * f_
+    QLo1, QLo1_ = load_1 * f, load_1 * f_
     f, f_ = _root(PL2, d.orifice_law)
-    QLo2, QLo2_ = d.load_2 * f, d.load_2 * f_
+    QLo2, QLo2_ = load_2 * f, load_2 * f_
 
     # Source and flow chambers, (2.8), (2.11), (2.12).
     g = d.source_gain
-    p1, p2 = d.pilot_1, d.pilot_2
     out[0] = g * (
-        d.source_flow - Qs1 - Qs2
+        source_flow - Qs1 - Qs2
         + (p1[0, 0] * Ps + p1[0, 1] * Pa1 + p1[0, 2] * Pb1)
         + (p2[0, 0] * Ps + p2[0, 1] * Pa2 + p2[0, 2] * Pb2)
     )  # fmt: skip
@@ -206,6 +179,22 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
     jac[4, 4] = g * (p2[2, 2] - d.seal_leakage) * Pb2_
     jac[4, 5] = g * d.end_area * x_
     jac[4, 6] = out[4] * d.end_area / Vb2 * x_
+
+    # What a groove's entrance and exit take off the flows through it.
+    if d.entrance_loss > 0.0:
+        near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
+        e, e_ = _excess(Ps - Pb1, near, d.entrance_loss, d)
+        _carry(e, e_, 0, 3, Ps_, Pb1_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb1, out, jac)
+        jac[3, 6] -= 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
+        e, e_ = _excess(Pb1 - Pa1, far, d.exit_loss, d)
+        _carry(e, e_, 3, 1, Pb1_, Pa1_, d.bulk_modulus / Vb1, d.pilot_bypass * d.chamber_gain, out, jac)
+        jac[3, 6] += 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
+        e, e_ = _excess(Ps - Pb2, far, d.entrance_loss, d)
+        _carry(e, e_, 0, 4, Ps_, Pb2_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb2, out, jac)
+        jac[4, 6] += 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
+        e, e_ = _excess(Pb2 - Pa2, near, d.exit_loss, d)
+        _carry(e, e_, 4, 2, Pb2_, Pa2_, d.bulk_modulus / Vb2, d.pilot_bypass * d.chamber_gain, out, jac)
+        jac[4, 6] -= 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
 
     # Load lines, (3.1), (3.2).
     g = d.load_gain
@@ -249,6 +238,130 @@ def motion(y, d, out, jac):  # type: ignore[no-untyped-def]
     jac[5, 8] = (-rim * w2 * PL2_ + d.transient * w2 * root_2_ * xdot * drag_PL2_) / m
     out[6] = xdot
     jac[6, 5] = x_
+
+
+@njit(cache=True, error_model="numpy")
+def fold_pilot(position, d):  # type: ignore[no-untyped-def]
+    """Fold the pilot stage: what both grooves of a side add to supply, flow chamber and end chamber.
+
+    Args:
+        position: φ/φ0.
+        d: A record of `COEFFICIENTS`; receives `pilot_1` and `pilot_2`, each shape (3, 3): a row a balance, a column
+            for each of Ps, Pa, Pb [m^3/(s Pa)].
+    """
+    near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
+    conductance, length, leakage = d.groove_conductance, d.groove_length, d.groove_leakage
+    _gather(fold_side(d.pilot, conductance, length, leakage, near, far, 1.0), d.pilot_bypass, d.pilot_1)
+    _gather(fold_side(d.pilot, conductance, length, leakage, far, near, d.leakage_sign), d.pilot_bypass, d.pilot_2)
+
+
+@njit(cache=True, error_model="numpy")
+def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # type: ignore[no-untyped-def]
+    """Fold the grooves of one side, whose tap lies the angle `near` from the supply and `far` from the outlet.
+
+    Args:
+        pilot: A `Pilot`.
+        conductance: G = b⁴/(185 μ r √c) [m^3/(s Pa)].
+        length: √c [rad], (A.13).
+        leakage: r δ³/(6 μ h) [m^3/(s Pa)].
+        near: Angle from supply to tap.
+        far: Angle from tap to outlet.
+        leakage_sign: Of the profile's part in the end chamber's leakage.
+
+    Returns:
+        Coefficients of (Ps, Pa, Pb), shape (6, 3), rows inlet, arriving, tap, outlet (one groove), end_leakage,
+        chamber_leakage (both).
+    """
+    rows = np.empty((6, 3))
+    across = leakage * (near + far) / 2.0
+    if pilot == 0:
+        # c P'' = P - (Pa + Pb)/2 in half angles, which neither overflow nor cancel: coth v ∓ 1/sinh v = tanh(v/2)^±1.
+        tanh_near, tanh_far = math.tanh(near / length / 2.0), math.tanh(far / length / 2.0)
+        to_end, to_chamber = conductance / tanh_near / 2.0, conductance * tanh_near / 2.0
+        out = conductance / tanh_far / 2.0
+        along = leakage * length * tanh_near
+        rows[0] = to_end + to_chamber, -to_chamber, -to_end
+        rows[1] = to_end - to_chamber, to_chamber, -to_end
+        rows[3] = 0.0, -out, out
+        rows[2] = rows[1] - rows[3]
+        rows[4] = -along, along - across, across
+        rows[5] = along, -along - across, across
+        return rows
+    # (2.20)-(2.33), (2.42) about the chambers' mean pressure, end flows as (A.29), (A.30); or, as coded in C.3,
+    # (A.22)-(A.25), (A.31)-(A.38) about zero.
+    mean = 0.5 if pilot == 1 else 0.0
+    sin_near, cos_near = math.sin(near / length), math.cos(near / length)
+    sin_far, cos_far = math.sin(far / length), math.cos(far / length)
+    ps, pa, pb = np.array([1.0, -mean, -mean]), np.array([0.0, 1.0 - mean, -mean]), np.array([0.0, -mean, 1.0 - mean])
+    at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
+    at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
+    profile = -ps * sin_near + at_supply * (cos_near - 1.0) - pa * sin_far - at_outlet * (1.0 - cos_far)
+    rows[0] = -conductance * at_supply
+    rows[1] = conductance * (ps * sin_near - at_supply * cos_near)
+    rows[2] = rows[1] - conductance * (at_outlet * cos_far - pa * sin_far)
+    rows[3] = conductance * at_outlet
+    rows[4] = across * (pb - pa) + leakage_sign * leakage * length * profile
+    rows[5] = across * (pb - pa) - leakage * length * profile
+    return rows
+
+
+@njit(cache=True, error_model="numpy")
+def _gather(rows, bypass, net):  # type: ignore[no-untyped-def]
+    """Gather a side's flows into the balances of supply, flow chamber and end chamber, shape (3, 3)."""
+    for i in range(3):
+        net[0, i] = -2.0 * bypass * rows[0, i]
+        net[1, i] = bypass * (2.0 * rows[3, i] + rows[5, i])
+        net[2, i] = 2.0 * rows[2, i] - rows[4, i]
+
+
+@njit(cache=True, error_model="numpy")
+def load_coefficients(since, d):  # type: ignore[no-untyped-def]
+    """Return CdL AL √(2/ρ) of both loads, `since` seconds after their pressures began to move."""
+    first = d.load_flow / math.sqrt(d.load_pressure_1 + d.load_pressure_1_rate * since)
+    second = d.load_flow / math.sqrt(d.load_pressure_2 + d.load_pressure_2_rate * since)
+    return first, second
+
+
+@njit(cache=True, error_model="numpy")
+def _excess(drop, angle, loss, d):  # type: ignore[no-untyped-def]
+    """Return what a loss adds to the laminar flow through a stretch of one groove (negative), and its slope.
+
+    The flow q is the root of R q + k q |q| = drop, with R the stretch's laminar resistance and k the loss.
+    """
+    laminar = d.groove_conductance * d.groove_length / angle
+    resistance = 1.0 / laminar
+    root = math.sqrt(resistance * resistance + 4.0 * loss * abs(drop))
+    return drop * (2.0 / (resistance + root) - laminar), 1.0 / root - laminar
+
+
+@njit(cache=True, error_model="numpy")
+def _carry(e, e_, here, there, here_, there_, gain_here, gain_there, out, jac):  # type: ignore[no-untyped-def]
+    """Take a flow and its slope in both grooves from one balance to another."""
+    out[here] -= 2.0 * gain_here * e
+    jac[here, here] -= 2.0 * gain_here * e_ * here_
+    jac[here, there] += 2.0 * gain_here * e_ * there_
+    out[there] += 2.0 * gain_there * e
+    jac[there, here] += 2.0 * gain_there * e_ * here_
+    jac[there, there] -= 2.0 * gain_there * e_ * there_
+
+
+@njit(cache=True, error_model="numpy")
+def groove_inlets(y, d):  # type: ignore[no-untyped-def]
+    """Return Qc1i and Qc2i [m^3/s], from the supply into one groove of either side, at a state under constant inputs.
+
+    Args:
+        y: State, shape (9,).
+        d: A record of `COEFFICIENTS`.
+    """
+    near, far = d.spool_position * d.groove_angle, (1.0 - d.spool_position) * d.groove_angle
+    first = fold_side(d.pilot, d.groove_conductance, d.groove_length, d.groove_leakage, near, far, 1.0)[0]
+    second = fold_side(d.pilot, d.groove_conductance, d.groove_length, d.groove_leakage, far, near, 1.0)[0]
+    q1 = first[0] * y[0] + first[1] * y[1] + first[2] * y[3]
+    q2 = second[0] * y[0] + second[1] * y[2] + second[2] * y[4]
+    if d.entrance_loss > 0.0:
+        q1 += _excess(y[0] - y[3], near, d.entrance_loss, d)[0]
+        q2 += _excess(y[0] - y[4], far, d.entrance_loss, d)[0]
+    return q1, q2
 
 
 @njit(cache=True, error_model="numpy")
@@ -310,11 +423,6 @@ def _stop_force(x, xdot, d):  # type: ignore[no-untyped-def]
     onset_x = side / STOP_ONSET if onset < 1.0 else 0.0
     slope = STOP_STIFFNESS * side + STOP_DAMPING * onset_x * side * xdot
     return -side * push, -side * slope, -STOP_DAMPING * onset
-
-
-def blank_coefficients() -> NDArray[np.record]:
-    """Return `COEFFICIENTS` of one design, all zero, shape (1,)."""
-    return np.zeros(1, dtype=COEFFICIENTS)
 
 
 def zero_state() -> FloatArray:

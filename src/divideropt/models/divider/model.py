@@ -1,7 +1,7 @@
 """The divider as a model to optimise: parameters in, quantities and verdicts out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -9,11 +9,16 @@ from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
 from divideropt.models.divider.formulations import FORMULATIONS
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.parameters import PARAMETERS
-from divideropt.models.divider.quantities import QUANTITIES
+from divideropt.models.divider.quantities import quantities_of
 from divideropt.models.divider.response import Response, respond
 from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.tolerances import solver_settings
 from divideropt.ode import SolverSettings
+
+REFERENCE_METHOD = "Radau"
+REFERENCE_RTOL = 1e-10
+REFERENCE_MAX_STEPS = 200_000
+"""A hundred times what a design that settles needs at that tolerance."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +29,13 @@ class Divider:
         formulation: A name of `FORMULATIONS`.
         scenario: What happens to every design.
         settings: How to integrate.
+        groove_loss: Whether the pilot grooves lose `groove_loss_factor` velocity heads at entrance and exit.
     """
 
     formulation: str = "conservative"
     scenario: Scenario = field(default_factory=Scenario)
     settings: SolverSettings = field(default_factory=solver_settings)
+    groove_loss: bool = False
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -38,7 +45,7 @@ class Divider:
     @property
     def quantities(self) -> Mapping[str, Quantity]:
         """Every quantity, in the order of a row."""
-        return QUANTITIES
+        return quantities_of(len(self.scenario.events))
 
     def evaluate(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
         """Simulate a batch.
@@ -54,8 +61,15 @@ class Divider:
             row, verdict = measure(self.respond(dict(zip(PARAMETERS, design.tolist(), strict=True))))
             rows.append(row)
             verdicts.append(verdict)
-        return np.array(rows).reshape(len(designs), len(QUANTITIES)), verdicts
+        return np.array(rows).reshape(len(designs), len(self.quantities)), verdicts
+
+    def reference(self) -> "Divider":
+        """Return the same valve and scenario, integrated by SciPy's Radau at a relative tolerance of 1e-10."""
+        return replace(
+            self, settings=solver_settings(REFERENCE_METHOD, REFERENCE_RTOL, max_steps=REFERENCE_MAX_STEPS)
+        )
 
     def respond(self, parameters: Mapping[str, float]) -> Response:
         """Simulate one design and keep its response; parameters by name, SI."""
-        return respond(parameters, FORMULATIONS[self.formulation], self.scenario, self.settings)
+        formulation = replace(FORMULATIONS[self.formulation], groove_loss=self.groove_loss)
+        return respond(parameters, formulation, self.scenario, self.settings)

@@ -96,6 +96,15 @@ _TABLE = (
         _BASE,
     ),
     Parameter("load_discharge", "", "CdL", "discharge coefficient, load orifices", 0.61, _POSITIVE, _BASE),
+    Parameter(
+        "groove_loss_factor",
+        "",
+        "K",
+        "velocity heads lost at a pilot groove's entrance and exit, with `groove_loss: entrance` only",
+        1.5,
+        _NOT_NEGATIVE,
+        "a sharp entrance, 0.5, and an exit, 1",
+    ),
 )
 
 PARAMETERS: Mapping[str, Parameter] = MappingProxyType({p.name: p for p in _TABLE})

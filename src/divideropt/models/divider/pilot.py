@@ -1,9 +1,9 @@
 """The pilot stage: flows of the grooves on one land, linear in the three pressures around it.
 
-`docs/model/pilot.md` derives them again: the continuity equation (A.1) has its two leakage terms
-swapped, so the corrected profile along a groove is hyperbolic where the thesis has sines and cosines. Being
-linear in (Ps, Pa, Pb), the stage is folded into coefficients once a design, and the right-hand side of the
-equations of motion needs none of it.
+`docs/model/pilot.md` derives them again: the continuity equation (A.1) has its two leakage terms swapped, so the
+corrected profile along a groove is hyperbolic where the thesis has sines and cosines. Being linear in (Ps, Pa, Pb),
+the stage is folded into coefficients once a design, and the right-hand side of the equations of motion needs none of
+it, unless the spool is being turned. The losses at a groove's ends, an option, are not linear: the kernel adds them.
 """
 
 import math
@@ -13,10 +13,50 @@ from dataclasses import dataclass
 import numpy as np
 
 from divideropt.models.base import FloatArray
-from divideropt.models.divider.formulations import Formulation, Pilot
+from divideropt.models.divider.formulations import Formulation
+from divideropt.models.divider.kernels import fold_side
 
 GROOVE_FACTOR = 185.0
 """Laminar flow through an equilateral triangle of side b: Q = -b⁴/(185 μ) dP/dl, (A.3)."""
+
+ENTRANCE_SHARE = 1 / 3
+"""Share of a groove's loss at the supply's end: 0.5 of the 1.5 velocity heads of a sharp entrance and an exit."""
+
+
+@dataclass(frozen=True)
+class Groove:
+    """What the flow along one groove depends on.
+
+    Attributes:
+        length: √c [rad], over which the pressure comes near the mean of the chambers, (A.13).
+        conductance: b⁴/(185 μ r √c) [m^3/(s Pa)].
+        leakage: r δ³/(6 μ h), of both grooves over an angle of 1 [m^3/(s Pa)].
+        angle: φ0 [rad].
+        area: Cross-section a of the triangle [m^2].
+        hydraulic_diameter: Four times that over the perimeter [m].
+    """
+
+    length: float
+    conductance: float
+    leakage: float
+    angle: float
+    area: float
+    hydraulic_diameter: float
+
+    @classmethod
+    def of(cls, p: Mapping[str, float]) -> "Groove":
+        """Derive it from every parameter by name, SI."""
+        r, b, h = p["spool_radius"], p["groove_width"], p["land_distance"]
+        viscosity, gap = p["kinematic_viscosity"] * p["density"], p["radial_clearance"] ** 3
+        length = math.sqrt(6 * b**4 * h / (GROOVE_FACTOR * r**2 * gap))
+        return cls(
+            length=length,
+            conductance=b**4 / (GROOVE_FACTOR * viscosity * r * length),
+            leakage=r * gap / (6 * viscosity * h),
+            angle=p["groove_angle"],
+            area=math.sqrt(3) / 4 * b**2,
+            hydraulic_diameter=b / math.sqrt(3),
+        )
 
 
 @dataclass(frozen=True)
@@ -51,111 +91,29 @@ class PilotSide:
 
 
 def pilot_sides(
-    p: Mapping[str, float], viscosity: float, spool_position: float, formulation: Formulation
+    p: Mapping[str, float], spool_position: float, formulation: Formulation
 ) -> tuple[PilotSide, PilotSide]:
     """Fold the pilot stage into coefficients.
 
     Args:
         p: Every parameter by name, SI.
-        viscosity: Dynamic viscosity [Pa s].
         spool_position: φ/φ0, strictly between 0 and 1.
         formulation: Which reading of the valve.
 
     Returns:
         Side 1, whose tap lies φ from the supply, and side 2, its mirror image.
     """
-    groove = _Groove.of(p, viscosity)
+    groove = Groove.of(p)
     near = spool_position * groove.angle
     far = groove.angle - near
-    if formulation.pilot is Pilot.HYPERBOLIC:
-        return _hyperbolic_side(groove, near, far), _hyperbolic_side(groove, far, near)
-    particular = formulation.pilot is Pilot.TRIGONOMETRIC
-    sign_2 = 1.0 if formulation.mirrored_leakage else -1.0
-    return (
-        _trigonometric_side(groove, near, far, particular, 1.0),
-        _trigonometric_side(groove, far, near, particular, sign_2),
-    )
+
+    def side(near: float, far: float, sign: float) -> PilotSide:
+        flows = fold_side(formulation.pilot, groove.conductance, groove.length, groove.leakage, near, far, sign)
+        return PilotSide(*flows)
+
+    return side(near, far, 1.0), side(far, near, leakage_sign(formulation))
 
 
-@dataclass(frozen=True)
-class _Groove:
-    """Constants of one groove: angle φ0, √c of (A.13), G of section 2, and the leakage's rδ³/(6μh)."""
-
-    angle: float
-    length: float
-    conductance: float
-    leakage: float
-
-    @classmethod
-    def of(cls, p: Mapping[str, float], viscosity: float) -> "_Groove":
-        r, b, h, delta = p["spool_radius"], p["groove_width"], p["land_distance"], p["radial_clearance"]
-        length = math.sqrt(6 * b**4 * h / (GROOVE_FACTOR * r**2 * delta**3))
-        return cls(
-            angle=p["groove_angle"],
-            length=length,
-            conductance=b**4 / (GROOVE_FACTOR * viscosity * r * length),
-            leakage=r * delta**3 / (6 * viscosity * h),
-        )
-
-
-def _hyperbolic_side(groove: _Groove, near: float, far: float) -> PilotSide:
-    """Corrected profile; `near` and `far` are the angles from the tap to the supply and to the outlet.
-
-    The solutions of c P'' = P - (Pa + Pb)/2, in half angles, which neither overflow nor cancel:
-    coth v ∓ 1/sinh v are tanh(v/2) and coth(v/2).
-    """
-    tanh_near = math.tanh(near / groove.length / 2)
-    tanh_far = math.tanh(far / groove.length / 2)
-    half = groove.conductance / 2
-    to_supply_end = half / tanh_near * _difference(0, 2)
-    to_supply_chamber = half * tanh_near * _difference(0, 1)
-    outlet = half / tanh_far * _difference(2, 1)
-    across = groove.leakage * groove.angle / 2 * _difference(2, 1)
-    along = groove.leakage * groove.length * tanh_near * _difference(0, 1)
-    arriving = to_supply_end - to_supply_chamber
-    return PilotSide(
-        inlet=to_supply_end + to_supply_chamber,
-        arriving=arriving,
-        tap=arriving - outlet,
-        outlet=outlet,
-        end_leakage=across - along,
-        chamber_leakage=across + along,
-    )
-
-
-def _trigonometric_side(
-    groove: _Groove, near: float, far: float, particular: bool, leakage_sign: float
-) -> PilotSide:
-    """(2.20)–(2.33), (2.42) and their mirror images, end flows as (A.29), (A.30): about the chambers' mean pressure.
-
-    Without the particular solution it is (A.22)–(A.25), (A.31)–(A.38) about zero, as coded in C.3.
-    """
-    sin_near, cos_near = math.sin(near / groove.length), math.cos(near / groove.length)
-    sin_far, cos_far = math.sin(far / groove.length), math.cos(far / groove.length)
-    mean = np.array([0.0, 0.5, 0.5]) if particular else np.zeros(3)
-    ps, pa, pb = np.eye(3) - mean
-    at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
-    at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
-    arriving = groove.conductance * (ps * sin_near - at_supply * cos_near)
-    leaving = groove.conductance * (at_outlet * cos_far - pa * sin_far)
-    across = groove.leakage * groove.angle / 2 * (pb - pa)
-    along = (
-        groove.leakage
-        * groove.length
-        * (-ps * sin_near + at_supply * (cos_near - 1) - pa * sin_far - at_outlet * (1 - cos_far))
-    )
-    return PilotSide(
-        inlet=-groove.conductance * at_supply,
-        arriving=arriving,
-        tap=arriving - leaving,
-        outlet=groove.conductance * at_outlet,
-        end_leakage=across + leakage_sign * along,
-        chamber_leakage=across - along,
-    )
-
-
-def _difference(plus: int, minus: int) -> FloatArray:
-    """Coefficients of one pressure less another, in the order (Ps, Pa, Pb)."""
-    row = np.zeros(3)
-    row[plus], row[minus] = 1.0, -1.0
-    return row
+def leakage_sign(formulation: Formulation) -> float:
+    """Sign of the profile's part in the end leakage of side 2."""
+    return 1.0 if formulation.mirrored_leakage else -1.0

@@ -1,6 +1,7 @@
 """The divider's results by name: the metrics of section 3.1 and what a design's geometry makes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from divideropt.models.base import Quantity
@@ -38,6 +39,31 @@ _TABLE = (
         10.0,
     ),
     Quantity("stop_clearance", "m", "x_max - max|x|", "left between spool and stop", 1e-3),
+    Quantity(
+        "groove_reynolds",
+        "",
+        "v (b/√3)/ν",
+        "Reynolds number in the pilot groove, worst equilibrium and groove; laminar below about 2000",
+        1000.0,
+    ),
+    Quantity(
+        "groove_velocity_ratio",
+        "",
+        "v/√(2(Ps - Pa)/ρ)",
+        "mean velocity in the pilot groove over that of a loss-free jet, worst; possible only below 1",
+        1.0,
+    ),
+    Quantity(
+        "pilot_share", "", "(2 Qc1i + 2 Qc2i)/Qs", "share of the source flow that enters the grooves, worst", 0.1
+    ),
+    Quantity(
+        "within_validity",
+        "",
+        "Re ≤ 2000, v ≤ jet",
+        "whether the pilot stage's assumptions hold: 1 where they do, else 0",
+        1.0,
+        logical=True,
+    ),
     Quantity("open_drop", "Pa", "", "drop at the design flow with the ports fully open, both holes counted", 1e6),
     Quantity("spool_mass", "kg", "m, (3.14)", "of the spool", 0.1),
     Quantity("stroke", "m", "2 x_max", "of the spool, stop to stop", 1e-3),
@@ -45,4 +71,41 @@ _TABLE = (
 )
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType({q.name: q for q in _TABLE})
-"""Every quantity by name, in the order of a row of results."""
+"""Every quantity by name, in the order of a row of results; those of an event are of the last one."""
+
+GEOMETRIC = ("open_drop", "spool_mass", "stroke", "spool_length")
+"""The quantities that no scenario changes."""
+
+EVENT_QUANTITIES = (
+    "steady_state_error",
+    "dynamic_error",
+    "source_pressure",
+    "flow_difference",
+    "settling_time",
+    "dynamic_error_abs",
+    "dynamic_error_percent",
+    "cumulative_error",
+    "cumulative_steady_error_percent",
+    "friction_band",
+    "load_regulation",
+    "pressure_loss",
+    "load_flow_1",
+    "load_flow_2",
+    "leakage",
+)
+"""The quantities that every event of a scenario has."""
+
+
+def quantities_of(events: int) -> Mapping[str, Quantity]:
+    """Return every quantity under a scenario of so many events: `QUANTITIES`, `event_1.settling_time` and so on.
+
+    Args:
+        events: The last one's quantities have plain names, those of the earlier ones the event's prefix.
+    """
+    return {**QUANTITIES, **{q.name: q for number in range(1, events) for q in _of_event(number)}}
+
+
+def _of_event(number: int) -> Iterator[Quantity]:
+    for name in EVENT_QUANTITIES:
+        q = QUANTITIES[name]
+        yield replace(q, name=f"event_{number}.{name}", description=f"{q.description}; event {number}")

@@ -1,13 +1,14 @@
-"""The response of one design to its scenario: from the initial state, over the step, to the end."""
+"""The response of one design to its scenario: from the initial state, over the events, to the end."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
+from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.equilibrium import (
     Equilibrium,
     find_equilibrium,
@@ -15,34 +16,38 @@ from divideropt.models.divider.equilibrium import (
     rest_on_rigid_stop,
 )
 from divideropt.models.divider.formulations import Formulation, Stop
-from divideropt.models.divider.geometry import Geometry, derive_geometry
-from divideropt.models.divider.kernels import STATES, jacobian, rates, signed_root, zero_state
-from divideropt.models.divider.pilot import pilot_sides
-from divideropt.models.divider.scenario import Scenario, coefficients
+from divideropt.models.divider.geometry import Geometry
+from divideropt.models.divider.kernels import STATES, jacobian, load_coefficients, rates, signed_root, zero_state
+from divideropt.models.divider.record import Design
+from divideropt.models.divider.scenario import Scenario, Span
 from divideropt.ode import Event, SolverSettings, SolverStatus, Trajectory, integrate
 
 
 @dataclass(frozen=True)
 class Phase:
-    """The response between two events.
+    """The response over one span of the scenario.
 
     Attributes:
+        span: When, and under which inputs.
         design: `COEFFICIENTS` in force, shape (1,).
         trajectory: The states; None where no time passes, or where the simulation did not get there.
         end: State at the end of the phase, shape (9,); None where the simulation did not get there.
-        rest: Equilibrium under these inputs, sought from the last state simulated; None if there is none.
+        rest: Equilibrium under these inputs, sought from the last state simulated; None if there is none, or if the
+            inputs move.
     """
 
-    design: NDArray[np.record]
+    span: Span
+    design: Design
     trajectory: Trajectory | None
     end: FloatArray | None
     rest: Equilibrium | None
 
-    def load_flows(self, states: FloatArray) -> FloatArray:
+    def load_flows(self, states: FloatArray, times: FloatArray | None = None) -> FloatArray:
         """Return QL1 and QL2 [m^3/s] through the load orifices, (3.3), (3.4).
 
         Args:
             states: Shape (…, 9).
+            times: When [s], shape (…); the end of the phase where not given. It matters where the inputs move.
 
         Returns:
             Shape (…, 2).
@@ -50,7 +55,14 @@ class Phase:
         d = self.design[0]
         pressures = np.maximum(states[..., 7:9], 0.0)
         roots = signed_root(np.ascontiguousarray(pressures).ravel(), d.orifice_law)  # one shape, compiled once
-        return np.asarray(roots.reshape(pressures.shape) * np.array([d.load_1, d.load_2]))
+        sizes = np.array([d.load_1, d.load_2]) if d.moving == 0 else self._moving_loads(states, times)
+        return np.asarray(roots.reshape(pressures.shape) * sizes)
+
+    def _moving_loads(self, states: FloatArray, times: FloatArray | None) -> FloatArray:
+        """CdL AL √(2/ρ) of both loads at each state, shape (…, 2)."""
+        since = np.full(states.shape[:-1], self.span.end) if times is None else times
+        flat = [load_coefficients(time - self.span.begin, self.design[0]) for time in since.ravel()]
+        return np.array(flat).reshape(*states.shape[:-1], 2)
 
 
 @dataclass(frozen=True)
@@ -59,15 +71,36 @@ class Response:
 
     Attributes:
         scenario: What happened to it.
-        parameters: Every parameter by name, SI.
-        geometry: What they make.
-        phases: One between each two events, in the order of time.
+        valve: The design.
+        phases: One for each span of the scenario, in the order of time.
     """
 
     scenario: Scenario
-    parameters: Mapping[str, float]
-    geometry: Geometry
+    valve: Valve
     phases: tuple[Phase, ...]
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Every parameter by name, SI."""
+        return self.valve.parameters
+
+    @property
+    def geometry(self) -> Geometry:
+        """What they make."""
+        return self.valve.geometry
+
+    @property
+    def rests_at_root(self) -> bool:
+        """Whether a final state is an equilibrium to be solved for, and not wherever the response ends."""
+        return self.scenario.settled and self.parameters["coulomb_friction"] == 0.0
+
+    @cached_property
+    def windows(self) -> tuple[tuple[Phase, ...], ...]:
+        """The phases of each event in turn: its way, if it is a ramp, and its stay."""
+        return tuple(
+            tuple(phase for phase in self.phases if phase.span.event == number)
+            for number in range(len(self.scenario.events))
+        )
 
 
 def respond(
@@ -87,46 +120,45 @@ def respond(
     Returns:
         The response, as far as it came.
     """
-    geometry = derive_geometry(parameters, holes=formulation.arc_holes, stem=formulation.stem)
+    valve = Valve.of(parameters, formulation)
     phases: list[Phase] = []
-    for inputs, begin, end in scenario.phases():
-        sides = pilot_sides(parameters, geometry.viscosity, inputs.spool_position, formulation)
-        design = coefficients(parameters, geometry, sides, inputs, formulation)
+    for span in scenario.spans():
+        design = valve.over(span, scenario.source_flow)
         if not phases and scenario.settled:
-            phases.append(_at_rest(design))
+            phases.append(_at_rest(span, design))
             continue
         start = phases[-1].end if phases else zero_state()
         if start is None:
-            phases.append(_not_reached(design, phases[-1]))
+            phases.append(_not_reached(span, design, phases[-1]))
         else:
-            phases.append(_integrate(design, (begin, end), start, settings))
-    return Response(scenario, parameters, geometry, tuple(phases))
+            phases.append(_integrate(span, design, start, settings))
+    return Response(scenario, valve, tuple(phases))
 
 
-def _at_rest(design: NDArray[np.record]) -> Phase:
+def _at_rest(span: Span, design: Design) -> Phase:
     guess = initial_guess(design)
     rest = find_equilibrium(design, guess) or rest_on_rigid_stop(design, guess)
-    return Phase(design, None, None if rest is None else rest.state, rest)
+    return Phase(span, design, None, None if rest is None else rest.state, rest)
 
 
-def _not_reached(design: NDArray[np.record], earlier: Phase) -> Phase:
+def _not_reached(span: Span, design: Design, earlier: Phase) -> Phase:
     guess = initial_guess(design) if earlier.rest is None else earlier.rest.state
-    return Phase(design, None, None, find_equilibrium(design, guess))
+    return Phase(span, design, None, None, None if span.moving else find_equilibrium(design, guess))
 
 
-def _integrate(
-    design: NDArray[np.record], span: tuple[float, float], start: FloatArray, settings: SolverSettings
-) -> Phase:
+def _integrate(span: Span, design: Design, start: FloatArray, settings: SolverSettings) -> Phase:
+    times = (span.begin, span.end)
     if design[0].stop == Stop.FROZEN:
-        trajectory = _integrate_to_frozen_stop(design, span, start, settings)
+        trajectory = _integrate_to_frozen_stop(design, times, start, settings)
     else:
-        trajectory = _run(design, span, start, settings)
+        trajectory = _run(design, times, start, settings)
     end = trajectory.final if trajectory.status is SolverStatus.FINISHED else None
-    return Phase(design, trajectory, end, find_equilibrium(design, trajectory.final))
+    rest = None if span.moving else find_equilibrium(design, trajectory.final)
+    return Phase(span, design, trajectory, end, rest)
 
 
 def _integrate_to_frozen_stop(
-    design: NDArray[np.record], span: tuple[float, float], start: FloatArray, settings: SolverSettings
+    design: Design, span: tuple[float, float], start: FloatArray, settings: SolverSettings
 ) -> Trajectory:
     """Integrate over a stop that freezes the spool: a solver would halve its steps for ever before the jump."""
     position, stop = STATES.index("x"), float(design[0].stop_position)
@@ -143,7 +175,7 @@ def _integrate_to_frozen_stop(
 
 
 def _run(
-    design: NDArray[np.record],
+    design: Design,
     span: tuple[float, float],
     start: FloatArray,
     settings: SolverSettings,

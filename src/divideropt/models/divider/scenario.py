@@ -1,26 +1,19 @@
-"""What happens to the valve: the inputs before and after each event, and the record the kernel reads."""
+"""What happens to the valve: events on its inputs, and the phases between which they divide the time."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
-
-from divideropt.models.divider.formulations import Formulation
-from divideropt.models.divider.geometry import Geometry
-from divideropt.models.divider.kernels import blank_coefficients
-from divideropt.models.divider.pilot import PilotSide
+from itertools import pairwise
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What is constant between two events.
+    """What is given from outside.
 
     Attributes:
         source_flow: Qs [m^3/s].
         spool_position: φ/φ0.
-        load_pressures: The steady load pressures [Pa] for which the load orifices are sized.
+        load_pressures: Pressures [Pa] that the load orifices make when half the scenario's source flow passes.
     """
 
     source_flow: float
@@ -29,17 +22,81 @@ class Inputs:
 
 
 @dataclass(frozen=True)
-class Scenario:
-    """One load step, from rest at an equilibrium or from an empty valve.
+class Event:
+    """Some inputs change, at once or evenly over a time.
 
     Attributes:
-        source_flow: Qs [m^3/s].
-        spool_position: φ/φ0, strictly between 0 and 1.
-        load_pressures: Steady load pressures before the step [Pa].
-        step_load: Which load steps, 1 or 2.
-        step_pressure: Its steady pressure after the step [Pa].
-        settled: Whether to start at the equilibrium before the step; else from all states zero.
-        step_time: When the load steps [s]; 0 for a settled start.
+        at: When it begins [s].
+        over: How long it takes [s]; 0 is a step.
+        source_flow: Qs from then on [m^3/s], or None where it stays.
+        spool_position: φ/φ0 from then on, or None.
+        load_pressures: Of either load from then on [Pa], or None.
+    """
+
+    at: float = 0.0
+    over: float = 0.0
+    source_flow: float | None = None
+    spool_position: float | None = None
+    load_pressures: tuple[float | None, float | None] = (None, None)
+
+    def applied_to(self, inputs: Inputs) -> Inputs:
+        """Return the inputs after it."""
+        first, second = (
+            old if new is None else new for old, new in zip(inputs.load_pressures, self.load_pressures, strict=True)
+        )
+        return Inputs(
+            inputs.source_flow if self.source_flow is None else self.source_flow,
+            inputs.spool_position if self.spool_position is None else self.spool_position,
+            (first, second),
+        )
+
+
+def load_step(load: int, to: float, at: float = 0.0, over: float = 0.0) -> Event:
+    """Return the event in which one load goes to another pressure.
+
+    Args:
+        load: Which, 1 or 2.
+        to: Its pressure [Pa] when half the scenario's source flow passes.
+        at: When [s].
+        over: How long it takes [s].
+    """
+    return Event(at, over, load_pressures=(to, None) if load == 1 else (None, to))
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of time over which the inputs stay, or go evenly from one value to another.
+
+    Attributes:
+        begin: First time [s].
+        end: Last time [s].
+        inputs: At the beginning.
+        final_inputs: At the end.
+        event: Which event it follows, from 0; -1 before the first.
+    """
+
+    begin: float
+    end: float
+    inputs: Inputs
+    final_inputs: Inputs
+    event: int
+
+    @property
+    def moving(self) -> bool:
+        """Whether the inputs change over it."""
+        return self.inputs != self.final_inputs
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Events in a row, from rest at an equilibrium or from an empty valve.
+
+    Attributes:
+        source_flow: Qs before the first event [m^3/s]; the load orifices are sized for half of it.
+        spool_position: φ/φ0 before it, strictly between 0 and 1.
+        load_pressures: Steady load pressures before it [Pa].
+        events: In the order of time, each over before the next begins; at least one.
+        settled: Whether to start at the equilibrium before the first event; else from all states zero at t = 0.
         end_time: When the simulation ends [s].
         accumulation_time: t_cum of (3.8), (3.11), (3.12) [s].
     """
@@ -47,92 +104,61 @@ class Scenario:
     source_flow: float = 1e-3
     spool_position: float = 0.5
     load_pressures: tuple[float, float] = (10e6, 10e6)
-    step_load: int = 1
-    step_pressure: float = 15e6
+    events: tuple[Event, ...] = (load_step(1, 15e6),)
     settled: bool = True
-    step_time: float = 0.0
     end_time: float = 1.0
     accumulation_time: float = 0.2
 
-    def phases(self) -> tuple[tuple[Inputs, float, float], ...]:
-        """Inputs between the events, each with its first and last time [s]; a settled start takes no time."""
-        first, second = self.load_pressures
-        stepped = (self.step_pressure, second) if self.step_load == 1 else (first, self.step_pressure)
-        return (
-            (Inputs(self.source_flow, self.spool_position, self.load_pressures), 0.0, self.step_time),
-            (Inputs(self.source_flow, self.spool_position, stepped), self.step_time, self.end_time),
-        )
+    def __post_init__(self) -> None:
+        """Refuse events that overlap or come too late."""
+        if not self.events:
+            raise ValueError("the scenario has no event; give one, such as load_step(1, 15e6)")
+        begins = [*(event.at for event in self.events), self.end_time]
+        overlap = any(event.at + event.over > after for event, after in zip(self.events, begins[1:], strict=True))
+        unfinished = self.events[-1].at + self.events[-1].over >= self.end_time
+        if begins[0] < 0.0 or overlap or unfinished or any(late <= early for early, late in pairwise(begins)):
+            raise ValueError("events must follow each other, each over before the next begins, and before the end")
+
+    @property
+    def initial(self) -> Inputs:
+        """The inputs before the first event."""
+        return Inputs(self.source_flow, self.spool_position, self.load_pressures)
+
+    @property
+    def last_event_time(self) -> float:
+        """When the last event begins [s]."""
+        return self.events[-1].at
+
+    def spans(self) -> tuple[Span, ...]:
+        """Divide the time: before the first event, then the way and the stay of each event in turn."""
+        inputs = self.initial
+        spans = [Span(0.0, self.events[0].at, inputs, inputs, -1)]
+        ends = [event.at for event in self.events[1:]] + [self.end_time]
+        for number, (event, end) in enumerate(zip(self.events, ends, strict=True)):
+            arrived, after = event.at + event.over, event.applied_to(inputs)
+            if event.over > 0.0:
+                spans.append(Span(event.at, arrived, inputs, after, number))
+            if end > arrived:
+                spans.append(Span(arrived, end, after, after, number))
+            inputs = after
+        return tuple(spans)
 
 
-def load_areas(p: Mapping[str, float], inputs: Inputs) -> tuple[float, float]:
+def load_areas(
+    p: Mapping[str, float], load_pressures: tuple[float, float], source_flow: float
+) -> tuple[float, float]:
     """Size the load orifices so that half the source flow makes the stated pressures, section 3.1.
 
     Args:
         p: Every parameter by name, SI.
-        inputs: The inputs in force.
+        load_pressures: The pressures [Pa].
+        source_flow: Qs for which they are sized [m^3/s].
 
     Returns:
         AL1 and AL2 [m^2].
     """
     first, second = (
-        (inputs.source_flow / 2) / (p["load_discharge"] * math.sqrt(2 / p["density"] * pressure))
-        for pressure in inputs.load_pressures
+        (source_flow / 2) / (p["load_discharge"] * math.sqrt(2 / p["density"] * pressure))
+        for pressure in load_pressures
     )
     return first, second
-
-
-def coefficients(
-    p: Mapping[str, float],
-    geometry: Geometry,
-    sides: tuple[PilotSide, PilotSide],
-    inputs: Inputs,
-    formulation: Formulation,
-) -> NDArray[np.record]:
-    """Fill what the kernel reads for one design under one set of inputs.
-
-    Args:
-        p: Every parameter by name, SI.
-        geometry: What `p` makes.
-        sides: The folded pilot stage at `inputs.spool_position`.
-        inputs: The inputs in force.
-        formulation: Which reading of the valve.
-
-    Returns:
-        `COEFFICIENTS`, shape (1,).
-    """
-    root = math.sqrt(2 / p["density"])
-    area_1, area_2 = load_areas(p, inputs)
-    design = blank_coefficients()
-    d = design[0]
-    d.source_gain = p["bulk_modulus"] / p["source_volume"]
-    d.chamber_gain = p["bulk_modulus"] / geometry.chamber_volume
-    d.load_gain = p["bulk_modulus"] / p["load_volume"]
-    d.bulk_modulus = p["bulk_modulus"]
-    d.end_volume = geometry.end_volume
-    d.end_area = geometry.end_area
-    d.mass = geometry.mass
-    d.viscous_friction = geometry.viscous_friction
-    d.coulomb_friction = p["coulomb_friction"]
-    d.fixed_1 = p["fixed_discharge"] * geometry.fixed_area_1 * root
-    d.fixed_2 = p["fixed_discharge"] * geometry.fixed_area_2 * root
-    d.variable = p["variable_discharge"] * root
-    d.load_1 = p["load_discharge"] * area_1 * root
-    d.load_2 = p["load_discharge"] * area_2 * root
-    length = p["damping_length"] if formulation.transient_force else 0.0
-    d.transient = length * p["variable_discharge"] * math.sqrt(2 * p["density"])
-    d.port_radius = geometry.port_radius
-    d.port_offset = geometry.port_offset
-    d.stop_position = geometry.stop_position
-    d.rim_thickness = p["rim_thickness"]
-    d.seal_leakage = geometry.seal_leakage if formulation.end_seals else 0.0
-    d.source_flow = inputs.source_flow
-    d.pilot_1 = sides[0].net()
-    d.pilot_2 = sides[1].net()
-    d.arc_holes = formulation.arc_holes
-    d.chord_holes = formulation.chord_holes
-    d.rim_holes = formulation.rim_holes
-    d.orifice_law = formulation.orifice_law
-    d.port_range = formulation.port_range
-    d.stop = formulation.stop
-    d.pressure_floor = formulation.pressure_floor
-    return design

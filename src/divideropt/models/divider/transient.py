@@ -4,7 +4,7 @@ Integrals are Gauss–Lobatto sums over the solver's own steps, and crossings ar
 nothing here depends on a grid of samples.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.response import Phase
-from divideropt.ode.base import NODE_WEIGHTS, NODES, lagrange_weights
+from divideropt.ode.base import NODE_WEIGHTS, NODES, Trajectory, lagrange_weights
 
 _FINE = lagrange_weights(np.linspace(0.0, 1.0, 33)).T
 
@@ -31,16 +31,17 @@ def largest_value(values: FloatArray) -> float:
 
 
 class FlowError:
-    """The load flows of a phase, and what they add up to."""
+    """The load flows after an event, over its phases, and what they add up to."""
 
-    def __init__(self, phase: Phase) -> None:
+    def __init__(self, phases: Sequence[Phase]) -> None:
         """Evaluate the flows at the nodes of every step."""
-        if phase.trajectory is None:
-            raise ValueError("a phase that took no time has no transient")
-        self._phase = phase
-        self._edges = phase.trajectory.edges
-        self._values = phase.trajectory.values
-        self._flows = phase.load_flows(np.swapaxes(self._values, 1, 2))
+        runs = [(phase, phase.trajectory) for phase in phases if phase.trajectory is not None]
+        if not runs or len(runs) < len(phases):
+            raise ValueError("a phase that took no time, or was not reached, has no transient")
+        self._phases = [phase for phase, run in runs for _ in range(len(run.values))]
+        self._edges = np.concatenate([runs[0][1].edges[:1], *(run.edges[1:] for _, run in runs)])
+        self._values = np.concatenate([run.values for _, run in runs])
+        self._flows = np.concatenate([_flows_at_nodes(phase, run) for phase, run in runs])
         self.begin = float(self._edges[0])
 
     def settled_at(self, final: float, band: float) -> float | None:
@@ -56,7 +57,7 @@ class FlowError:
         def beyond(theta: float) -> float:
             return abs(float(self._flow(step, np.array([theta]))[0, 0]) - final) - band * final
 
-        return self._time(step, _root(beyond, NODES[node], NODES[node + 1]))
+        return float(self._time(step, np.array(_root(beyond, NODES[node], NODES[node + 1]))))
 
     def integrals(self, reference: float, until: float) -> tuple[float, float]:
         """Integrate QL1 - QL2 less a reference, and its magnitude, from the event on.
@@ -107,10 +108,17 @@ class FlowError:
 
     def _flow(self, step: int, theta: FloatArray) -> FloatArray:
         """Load flows at places on a step, shape (m, 2)."""
-        return self._phase.load_flows(lagrange_weights(theta) @ self._values[step].T)
+        states = lagrange_weights(theta) @ self._values[step].T
+        return self._phases[step].load_flows(states, self._time(step, theta))
 
-    def _time(self, step: int, theta: float) -> float:
-        return float(self._edges[step] + theta * (self._edges[step + 1] - self._edges[step]))
+    def _time(self, step: int, theta: FloatArray) -> FloatArray:
+        return np.asarray(self._edges[step] + theta * (self._edges[step + 1] - self._edges[step]))
+
+
+def _flows_at_nodes(phase: Phase, run: Trajectory) -> FloatArray:
+    """Load flows at the nodes of every step of a phase, shape (k, NODES_PER_STEP, 2)."""
+    times = run.edges[:-1, None] + np.diff(run.edges)[:, None] * NODES
+    return phase.load_flows(np.swapaxes(run.values, 1, 2), times)
 
 
 def _root(function: Callable[[float], float], left: float, right: float) -> float:

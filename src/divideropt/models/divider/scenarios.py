@@ -1,0 +1,145 @@
+"""Several scenarios on one design: the quantities of each, and the worst of some of them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
+from divideropt.models.divider.model import Divider
+from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
+
+BASE = "scenario"
+"""Name of the scenario whose quantities have plain names."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The worst of one quantity over some scenarios, a quantity itself.
+
+    Attributes:
+        quantity: Its name, plain.
+        scenarios: Over which of them.
+        least: Whether the smallest is the worst, as for a lower bound; else the largest.
+    """
+
+    quantity: str
+    scenarios: tuple[str, ...]
+    least: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name of the quantity it makes, `worst.settling_time` or `least.stability_margin`."""
+        return f"{'least' if self.least else 'worst'}.{self.quantity}"
+
+
+@dataclass(frozen=True)
+class Scenarios:
+    """The divider under several scenarios, as a model to optimise.
+
+    Attributes:
+        models: The divider under each by name; that of `BASE` first.
+        worst: What is to be gathered over them.
+    """
+
+    models: Mapping[str, Divider]
+    worst: tuple[Worst, ...] = ()
+
+    @property
+    def base(self) -> Divider:
+        """The divider under the scenario whose quantities have plain names."""
+        return self.models[BASE]
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """Every parameter, in the order of a design's columns."""
+        return self.base.parameters
+
+    @property
+    def quantities(self) -> Mapping[str, Quantity]:
+        """Every quantity: of `BASE`, of each other scenario with its name in front, and the worst of some."""
+        counts = {name: len(model.scenario.events) for name, model in self.models.items()}
+        known = quantities_by_event_count(counts)
+        return {**known, **{w.name: _quantity_of(w, known) for w in self.worst}}
+
+    def evaluate(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
+        """Simulate a batch under every scenario.
+
+        Args:
+            designs: Shape (n, d), columns as in `parameters`, SI.
+
+        Returns:
+            The quantities, shape (n, m), and a verdict a design: of the first scenario that does not end ok.
+        """
+        quantities = self.quantities
+        columns: dict[str, FloatArray] = {}
+        verdicts: list[Verdict] = []
+        for name, model in self.models.items():
+            values, found = model.evaluate(designs)
+            columns |= {_prefixed(name, key): values[:, i] for i, key in enumerate(model.quantities)}
+            verdicts = (
+                [*found] if name == BASE else [_first(a, b, name) for a, b in zip(verdicts, found, strict=True)]
+            )
+        for worst in self.worst:
+            over = np.array([columns[_prefixed(name, worst.quantity)] for name in worst.scenarios])
+            columns[worst.name] = _worst_of(over, quantities[worst.name].signed, worst.least)
+        return np.column_stack([columns[name] for name in quantities]), verdicts
+
+    def reference(self) -> "Scenarios":
+        """Return the same model with the reference solver."""
+        return replace(self, models={name: model.reference() for name, model in self.models.items()})
+
+
+def quantities_by_event_count(counts: Mapping[str, int]) -> dict[str, Quantity]:
+    """Return every quantity under some scenarios.
+
+    Args:
+        counts: How many events each has, by name; that of `BASE` first.
+
+    Returns:
+        By name: `settling_time`, `event_1.settling_time`, `cold_oil.settling_time`, `cold_oil.event_1.settling_time`.
+    """
+    return {q.name: q for name, events in counts.items() for q in _of_scenario(name, events)}
+
+
+def _of_scenario(name: str, events: int) -> Iterator[Quantity]:
+    for q in quantities_of(events).values():
+        if name == BASE:
+            yield q
+        elif q.name not in GEOMETRIC:
+            yield replace(q, name=f"{name}.{q.name}", description=f"{q.description}; scenario {name}")
+
+
+def _quantity_of(worst: Worst, known: Mapping[str, Quantity]) -> Quantity:
+    q = known[worst.quantity]
+    words = f"{'smallest' if worst.least else 'largest'} over {', '.join(worst.scenarios)}"
+    return replace(q, name=worst.name, description=f"{q.description}; {words}")
+
+
+def _prefixed(scenario: str, quantity: str) -> str:
+    return quantity if scenario == BASE else f"{scenario}.{quantity}"
+
+
+def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
+    """The earlier verdict unless it is ok and the later, of a named scenario, is not."""
+    if not earlier.ok or later.ok:
+        return earlier
+    return Verdict(later.outcome, f"in scenario {name}: {later.text}")
+
+
+def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
+    """Gather the worst of each design, NaN where one is; a signed quantity counts by its magnitude, and stays signed.
+
+    Args:
+        over: Shape (scenarios, n).
+        signed: Whether magnitudes are compared.
+        least: Whether the smallest is sought.
+
+    Returns:
+        Shape (n,).
+    """
+    size = np.abs(over) if signed else over
+    lost = np.isnan(size).any(axis=0)
+    size = np.where(lost, 0.0, size)
+    rows = size.argmin(axis=0) if least else size.argmax(axis=0)
+    return np.where(lost, np.nan, np.take_along_axis(over, rows[None], axis=0)[0])
