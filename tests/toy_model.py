@@ -30,9 +30,51 @@ class Toy:
         return quantities, [Verdict(Outcome.UNSETTLED, text) if f else Verdict(Outcome.OK) for f in failed]
 
 
-def toy_problem():
+class CheckedToy(Toy):
+    """A toy with a reference, from which its f2 is off by `error`, and by `slip` more where x1 is above 0.5."""
+
+    def __init__(self, error=1e-4, slip=0.0, failing_from=2.0):
+        super().__init__()
+        self.error, self.slip, self.failing_from = error, slip, failing_from
+
+    def reference(self):
+        return ExactToy(self.error, self.slip, self.failing_from)
+
+
+class ExactToy(Toy):
+    """The reference; it finds designs with x1 from `failing_from` on unsettled."""
+
+    def __init__(self, error, slip, failing_from):
+        super().__init__()
+        self.error, self.slip, self.failing_from = error, slip, failing_from
+
+    def evaluate(self, designs):
+        quantities, verdicts = super().evaluate(designs)
+        x1 = designs[:, 0]
+        quantities[:, 1] *= 1.0 + self.error + self.slip * (x1 > 0.5)
+        failing = Verdict(Outcome.UNSETTLED, "x1 is too large")
+        return quantities, [failing if x >= self.failing_from else v for x, v in zip(x1, verdicts, strict=True)]
+
+
+class BrokenReference(Toy):
+    """Its reference cannot be made."""
+
+    def reference(self):
+        raise RuntimeError("no licence")
+
+
+class OtherReference(Toy):
+    """Its reference is another model."""
+
+    def reference(self):
+        other = Toy()
+        del other.quantities["spare"]
+        return other
+
+
+def toy_problem(model=None):
     """The toy as a problem with goals and a constraint."""
-    model = Toy()
+    model = model or Toy()
     q = model.quantities
     return Problem(
         model=model,

@@ -16,6 +16,7 @@ from divideropt.errors import DiskError, DivideroptError, FileMistakes, NoFeasib
 if TYPE_CHECKING:
     import pandas as pd
 
+    from divideropt.analysis import Tally
     from divideropt.campaign.config import Campaign
 
 # Everything else is imported by the command that needs it, so that --help answers at once.
@@ -76,12 +77,28 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
     runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr, again)
     try:
-        size = runner.run(fresh=fresh).front
+        front = runner.run(fresh=fresh).front
     except NoFeasibleDesignError:
         _say(f"report: {write_report(Store(folder))}")
         raise
-    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({size} designs)")
+    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({front.points} designs)")
+    _say(_counted(front))
     _say(f"report: {write_report(Store(folder))}")
+
+
+@commands.command()
+@click.argument("store", type=_FILE)
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes at a time; the campaign's where not given.")
+def verify(store: Path, workers: int | None) -> None:
+    """Simulate every front point again, far more exactly, and mark the fronts."""
+    from divideropt.campaign.verify import verify_store
+    from divideropt.report import write_report
+    from divideropt.store import Store
+
+    again = shlex.join(["divideropt", "verify", str(store)])
+    count = verify_store(Store(store), workers, sys.stderr, again)
+    _say(f"report: {write_report(Store(store))}")
+    _say(_counted(count))
 
 
 @commands.command()
@@ -99,7 +116,8 @@ def status(store: Path, as_json: bool) -> None:
     if as_json:
         _write_data(json.dumps(dataclasses.asdict(found), indent=2) + "\n")
         return
-    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front"]
+    verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
+    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
     for item in found.runs:
         outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
@@ -232,6 +250,15 @@ def _write_data(text: str) -> None:
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise DiskError(f"standard output: {error.strerror}; nothing in a store was touched") from error
+
+
+def _counted(count: "Tally") -> str:
+    """Say how front points came out when they were simulated again."""
+    largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
+    return (
+        f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
+        + f"; largest deviation: {largest}" * bool(largest)
+    )
 
 
 def _count(number: int | None) -> str:

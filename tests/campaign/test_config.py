@@ -59,6 +59,7 @@ def test_defaults_are_those_of_the_design():
     )
     assert campaign.reference_point == {"steady_state_error": 10.0, "source_pressure": 30e6}
     assert (campaign.parallel.workers, campaign.parallel.backend) == (2, "loky")
+    assert (campaign.verification.sample, campaign.verification.share) == (50, 0.01)
     nsga2, complex_method = campaign.strategies
     assert (nsga2.name, nsga2.options, nsga2.seeds) == ("nsga2", NSGA2(population=40, generations=12), (1,))
     assert (complex_method.options, complex_method.seeds) == (ComplexMethod(points=10), (1, 2))
@@ -282,6 +283,19 @@ MISTAKES = {
             "strategies: {}",
         ),
         [(14, 13, "at least one of nsga2")],
+    ),
+    # verification
+    "a sample below nothing": (
+        ("strategies:", "verification: {sample: -1}\nstrategies:"),
+        [(14, 24, "-1 is too small; the least permitted is 0")],
+    ),
+    "a tolerance without its unit": (
+        ("strategies:", "verification: {tolerance: 1}\nstrategies:"),
+        [(14, 27, "1 has no unit; write 1 %")],
+    ),
+    "a tolerance of nothing": (
+        ("strategies:", "verification: {tolerance: 0 %}\nstrategies:"),
+        [(14, 27, "out of range; what is permitted is above 0 %")],
     ),
     # parallel
     "too many workers": (

@@ -84,7 +84,7 @@ def test_a_second_run_asks_the_model_nothing_and_changes_nothing(whole, tmp_path
 @pytest.mark.parametrize("kept", [0, 1, 2])
 def test_a_store_that_lost_its_tail_is_completed_to_the_same_bits(whole, tmp_path, kept, monkeypatch):
     folder = tmp_path / "store"
-    monkeypatch.setattr("divideropt.store.log.FLUSH_ROWS", 1)
+    monkeypatch.setattr("divideropt.store.parts.FLUSH_ROWS", 1)
     run(folder)
     for log in (folder / "evaluations").iterdir():
         for part in sorted(log.iterdir())[kept:]:

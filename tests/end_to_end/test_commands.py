@@ -3,12 +3,15 @@
 import io
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -31,6 +34,7 @@ reference_point: {steady_state_error: 10 %, dynamic_error: 10 mL, source_pressur
 strategies:
   nsga2: {population: 16, generations: GENERATIONS, seeds: [1]}
   complex: {points: 6, evaluations: EVALUATIONS, seeds: [1]}
+verification: {sample: 0}
 """
 
 
@@ -69,10 +73,13 @@ def test_run_writes_fronts_and_a_report_and_says_where(finished):
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert done.stderr.splitlines()[-1] == "report: results/small/report.html"
+    assert " front points, 0 deviate; largest deviation: steady_state_error " in done.stderr.splitlines()[-2]
     store = folder / "results" / "small"
     front = pd.read_parquet(store / "fronts" / "combined.parquet")
     assert len(front) > 5
     assert (front.outcome == "ok").all()
+    assert (front.verified == "yes").sum() >= 5
+    assert set(front.verified) <= {"yes", "no"}
     assert set(QUANTITIES) < set(front.columns)
     assert "Traceback" not in done.stderr
     assert (store / "report.html").stat().st_size > 1e6
@@ -87,6 +94,7 @@ def test_status_says_what_is_done_and_best(finished):
     ]
     front = pd.read_parquet(folder / "results" / "small" / "fronts" / "combined.parquet")
     assert said["front"] == len(front)
+    assert (said["verified"], said["deviating"]) == ((front.verified == "yes").sum(), 0)
     lam = pd.concat(
         [
             (front.steady_state_error - 0.5) / 0.5 * 3,
@@ -98,12 +106,44 @@ def test_status_says_what_is_done_and_best(finished):
     assert min(r["best"] for r in said["runs"]) == pytest.approx(lam.min(), rel=1e-12)
     words = call("status", "results/small", folder=folder).stdout
     assert "nsga2-1: 64 of 64 evaluations" in words
+    assert f"{said['verified']} of them verified, 0 deviating" in words
 
 
 def test_report_writes_it_again_the_same(finished):
     folder, _ = finished
     assert call("report", "results/small", "--out", "again.html", folder=folder).returncode == 0
     assert (folder / "again.html").read_bytes() == (folder / "results" / "small" / "report.html").read_bytes()
+
+
+def test_verify_does_all_front_points_and_goes_on_after_a_kill_and_a_signal(finished, tmp_path):
+    store = tmp_path / "store"
+    shutil.copytree(finished[0] / "results" / "small", store)
+    kept = store / "verification"
+    command = [sys.executable, "-m", "divideropt", "verify", "store"]
+    for number, send, code in ((signal.SIGKILL, os.killpg, -9), (signal.SIGTERM, os.kill, 143)):
+        before = len(list(kept.iterdir()))
+        process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        wait_until(lambda count=before: len(list(kept.iterdir())) > count, "nothing was verified")
+        send(process.pid, number)
+        words = process.communicate(timeout=60)[1]
+        assert process.returncode == code, words
+    assert words.splitlines()[-1].strip() == "divideropt verify store"
+    done = call("verify", "store", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    fronts = {p.stem: pd.read_parquet(p) for p in (store / "fronts").glob("*.parquet")}
+    points = pd.concat(fronts.values()).drop_duplicates("design_id")
+    assert (points.verified == "yes").all()
+    assert points.deviation_dynamic_error.between(0.0, 0.01).all()
+    results = pd.read_parquet(kept).set_index("design_id")
+    assert results.index.is_unique
+    assert set(results.index) == set(points.design_id)
+    again, first = results.loc[points.design_id].dynamic_error.values, points.dynamic_error.values
+    share = abs(first - again) / np.maximum(abs(again), 0.01 * 1e-6)
+    assert share == pytest.approx(points.deviation_dynamic_error.values, rel=1e-9)
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith(f"verified: {len(points)} of {len(points)} front points, 0 deviate; largest deviation: ")
+    assert f"dynamic_error {share.max():.1e}" in last
+    assert "Verified: " in (store / "report.html").read_text(encoding="utf-8")
 
 
 def test_evaluate_keeps_order_and_identities_and_reports_failures_as_rows(tmp_path):
@@ -187,6 +227,7 @@ def test_simulate_gives_a_table_or_a_picture(tmp_path):
         (["run", "nowhere.yaml"], "no such file"),
         (["check", "nowhere.yaml"], "no such file"),
         (["status", "."], "no store there"),
+        (["verify", "."], "no store there"),
         (["report", "nowhere"], "no store there"),
         (["evaluate", "nowhere.csv"], "readable CSV file"),
         (["frobnicate"], "No such command"),
@@ -270,13 +311,18 @@ def words(folder: Path) -> str:
 
 def wait_for_parts(folder: Path, count: int) -> None:
     """Wait until the log has some parts."""
-    deadline = time.monotonic() + 120
     log = folder / "results" / "small" / "evaluations"
+    wait_until(lambda: len(list(log.glob("*/part-*.parquet"))) >= count, "the campaign logged nothing")
+
+
+def wait_until(question: Callable[[], bool], complaint: str) -> None:
+    """Wait until it is so."""
+    deadline = time.monotonic() + 120
     while time.monotonic() < deadline:
-        if len(list(log.glob("*/part-*.parquet"))) >= count:
+        if question():
             return
         time.sleep(0.02)
-    raise AssertionError("the campaign logged nothing")
+    raise AssertionError(complaint)
 
 
 @pytest.fixture(scope="module", name="uninterrupted")

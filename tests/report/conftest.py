@@ -34,6 +34,7 @@ reference_point: {steady_state_error: 10 %, dynamic_error: 10 mL, source_pressur
 strategies:
   nsga2: {population: 12, generations: 3, seeds: [1]}
   complex: {evaluations: 40, seeds: [1]}
+verification: {sample: 0}
 parallel: {backend: sequential}
 """
 

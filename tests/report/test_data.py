@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from divideropt.analysis import Verified
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity
@@ -18,6 +19,7 @@ from divideropt.report.front import Design, leanings
 from divideropt.report.page import render_report
 from divideropt.report.responses import MOST_POINTS
 from divideropt.report.sampling import spread, thin
+from divideropt.report.tables import front_table
 from divideropt.store import Store, TableSchema
 
 HOSTILE = "</script><script>window.hacked=1</script>"
@@ -236,3 +238,37 @@ def test_a_response_page_wants_a_value_a_time():
     assert HOSTILE not in page
     with pytest.raises(ValueError, match="1 values for 2 times"):
         response_page("x", ResponseCurves([0.0, 1.0], (Curve("x", "m", [1.0]),)))
+
+
+def test_the_table_says_which_designs_are_verified(store, data):
+    stored = store.read_front("combined", schema_of(store)).to_pydict()
+    words = dict(zip(stored["design_id"], stored["verified"], strict=True))
+    assert set(words.values()) == {"yes", "no"}
+    assert {d.design_id: d.verified for d in data.front} == words
+    table = front_table(data, 1000)
+    place = [heading.words for heading in table.headings].index("verified")
+    assert {row.design_id: row.cells[place].text for row in table.rows} == words
+    text = render_report(data)
+    assert f"Verified: {list(words.values()).count('yes')} of {len(words)} designs" in text
+    assert 'id="deviating"' not in text
+
+
+def test_a_design_that_deviates_is_said_so_above_the_table(data):
+    first, second, *others = data.front
+    front = (
+        replace(first, verified=Verified.DEVIATES, deviation=0.0521),
+        replace(second, verified=Verified.DEVIATES, deviation=1e-5),
+        *(replace(design, verified=Verified.NO) for design in others),
+    )
+    text = render_report(replace(data, front=front))
+    warning = text.index("2 designs of this front deviate:")
+    assert warning < text.index('id="front-table"')
+    assert f"<b>{first.design_id}</b> deviates, by 5.2 %" in text[warning:]
+    assert f"<b>{second.design_id}</b> deviates, by its outcome" in text[warning:]
+    assert f"Verified: 2 of {len(front)} designs" in text
+    assert "0 came out the same" in text
+
+
+def test_a_model_without_a_reference_has_nothing_verified(spheres):
+    text = write_report(spheres(2)).read_text("utf-8")
+    assert "No design was simulated again" in text

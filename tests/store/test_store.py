@@ -1,16 +1,18 @@
 """The store: what is written is read back to the bit, and what is damaged is refused."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
 from divideropt.errors import DiskError, StoreError, StoreInUseError, UsageError
-from divideropt.store import Store, TableSchema
+from divideropt.store import RunLog, Store, TableSchema
 from divideropt.store.files import publish
-from toy_model import toy_problem
+from toy_model import Toy, toy_problem
 
 
 @pytest.fixture(name="problem")
@@ -80,17 +82,44 @@ def test_a_later_version_is_refused_by_number(tmp_path, problem):
     part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
     table = pq.read_table(part)
     pq.write_table(table.replace_schema_metadata({b"divideropt.schema_version": b"99"}), part)
-    with pytest.raises(StoreError, match="schema version 99, this program knows up to 1"):
+    with pytest.raises(StoreError, match="schema version 99, this program knows up to 2"):
         Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
+
+
+def test_an_earlier_version_is_refused_by_number(tmp_path, problem):
+    filled_log(Store(tmp_path), problem, batches=1)
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    table = pq.read_table(part)
+    pq.write_table(table.replace_schema_metadata({b"divideropt.schema_version": b"1"}), part)
+    with pytest.raises(StoreError, match="schema version 1, this program writes 2; go on with the divideropt that"):
+        Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
+
+
+def test_a_model_whose_names_are_those_of_other_columns_is_refused():
+    model = Toy()
+    model.quantities["verified"] = replace(model.quantities["spare"], name="verified")
+    with pytest.raises(UsageError, match="verified: the model gives this name"):
+        TableSchema.of(toy_problem(model))
 
 
 def test_a_missing_part_is_noticed(tmp_path, problem):
     filled_log(Store(tmp_path), problem)
     sorted((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))[2].unlink()
-    with pytest.raises(StoreError, match="batch 2 is missing"):
+    for read in (RunLog.table, lambda log: list(log.replay())):
+        with pytest.raises(StoreError, match=r"part-000000021.*the part before it is missing"):
+            read(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)))
+
+
+def test_a_part_that_lost_a_batch_is_noticed(tmp_path, problem):
+    log = Store(tmp_path).log("nsga2-1", TableSchema.of(problem))
+    for seed in range(3):
+        log.append(evaluations(problem, 7, seed))
+    log.flush()
+    part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
+    table = pq.read_table(part)
+    pq.write_table(table.filter(pc.not_equal(table["batch"], 1)), part)
+    with pytest.raises(StoreError, match="batch 1 is missing"):
         list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
-    with pytest.raises(StoreError, match="the part before it is missing"):
-        Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).table()
 
 
 def test_an_outcome_nobody_knows_is_refused(tmp_path, problem):

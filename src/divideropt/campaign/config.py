@@ -81,6 +81,11 @@ class VerificationConfig(Section):
     tolerance: Annotated[float, Measure("%", POSITIVE)] = 1.0
     """Largest deviation of an objective from the reference's, of which it is a share."""
 
+    @property
+    def share(self) -> float:
+        """The tolerance as a part of 1, as deviations are."""
+        return self.tolerance / 100.0
+
 
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAME.fullmatch(value):

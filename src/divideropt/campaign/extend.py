@@ -1,4 +1,7 @@
-"""May a store go on with this campaign? Only budgets, seeds and strategies may be added to."""
+"""May a store go on with this campaign? Only budgets, seeds and strategies may be added to.
+
+What touches no evaluation, `verification` and `parallel`, may be changed at will.
+"""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

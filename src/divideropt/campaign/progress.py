@@ -168,6 +168,35 @@ class Display:
         return found
 
 
+class Counter:
+    """Shows how far a count is until it is left: in place on a terminal, elsewhere a line now and then."""
+
+    def __init__(self, words: str, total: int, stream: TextIO) -> None:
+        """Begin at 0; `words` has a place for the count and one for the total."""
+        self._words, self._total, self._count = words, total, 0
+        self._console = Console(file=stream, highlight=False)
+        self._seconds = SHOW_SECONDS if self._console.is_terminal else LINE_SECONDS
+        self._shown = time.monotonic()
+
+    def __enter__(self) -> "Counter":
+        """Begin to show."""
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        """Show the last count on a line of its own."""
+        self._show("\n")
+
+    def advance(self) -> None:
+        """Count one more."""
+        self._count += 1
+        if time.monotonic() - self._shown >= self._seconds:
+            self._show("\r" if self._console.is_terminal else "\n")
+
+    def _show(self, end: str) -> None:
+        self._shown = time.monotonic()
+        self._console.print(self._words.format(self._count, self._total), end=end, soft_wrap=True)
+
+
 def _line(s: Standing) -> str:
     state = "done" if s.finished else f"{100 * s.done / s.budget:.0f} %"
     replayed = f", {s.replayed} from the log" if s.replayed else ""

@@ -1,47 +1,29 @@
-"""Runs a campaign: its runs in parallel, then the fronts. The one stateful class of the campaign."""
+"""Runs a campaign: its runs in parallel, then the fronts, whose points of interest are verified."""
 
-import os
-import signal
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import TextIO
 
 import numpy as np
 from joblib import Parallel, delayed, parallel_config
-from joblib.externals.loky.process_executor import TerminatedWorkerError
 
-from divideropt.analysis import combined_front, run_front
+from divideropt.analysis import Tally, combined_front, run_front, tally, worth_verifying
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_extends
+from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import Run, build_problem, plan_runs
 from divideropt.campaign.progress import Display
-from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, work, work_as_process
-from divideropt.errors import DivideroptError, NoFeasibleDesignError, StoreError
+from divideropt.campaign.verify import Verifier
+from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
+from divideropt.errors import NoFeasibleDesignError, StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
-from divideropt.store import Store, TableSchema
+from divideropt.store import Store
 from divideropt.store.files import disk_errors
-
-
-class InterruptedRunError(DivideroptError):
-    """A signal stopped the campaign; what was computed is on disk."""
-
-    def __init__(self, number: int, folder: Path, again: str) -> None:
-        """Word it for a signal, a store, and the command that goes on."""
-        self.exit_code = 128 + number
-        super().__init__(
-            f"stopped by {signal.Signals(number).name}; everything computed is in {folder}. To go on:\n  {again}"
-        )
-
-
-class WorkerLostError(DivideroptError):
-    """A worker process died; the exit code is that of a bug, since nothing of the user's made it."""
 
 
 @dataclass(frozen=True)
@@ -50,11 +32,11 @@ class Outcomes:
 
     Attributes:
         store: The store.
-        front: Number of designs on the combined front.
+        front: The designs on the combined front, counted.
     """
 
     store: Store
-    front: int
+    front: Tally
 
 
 class Runner:
@@ -74,14 +56,13 @@ class Runner:
         """
         self._campaign = campaign
         self._text = dump_campaign(campaign)
-        self._again = again
         self._store = Store(folder)
+        self._interruption = Interruption(folder, again, self._store.status_folder / STOP_FILE)
         self._workers = 1 if campaign.parallel.backend == "sequential" else workers
         self._words = words
-        self._signal: int | None = None
 
     def run(self, *, fresh: bool = False) -> Outcomes:
-        """Run what is not yet in the store, and write the fronts.
+        """Run what is not yet in the store, write the fronts, and verify some of their points.
 
         Args:
             fresh: Whether to move an existing store aside first.
@@ -90,6 +71,7 @@ class Runner:
             What came out.
 
         Raises:
+            UsageError: The model's reference is wrong.
             StoreInUseError: Another process writes to the store.
             StoreError: The store belongs to another campaign, or is damaged.
             DiskError: The disk refused.
@@ -97,15 +79,16 @@ class Runner:
             WorkerLostError: A worker process died.
             NoFeasibleDesignError: No design is feasible.
         """
+        problem = build_problem(self._campaign)
+        verifier = Verifier(self._campaign, problem, self._store, self._workers, self._words, self._interruption)
         aside = self._store.move_aside() if fresh else None
         if aside is not None:
             print(f"the old store is now {aside}", file=self._words)
-        with self._store.writing(), self._signals():
+        with self._store.writing(), self._interruption.signals():
             self._take_campaign()
-            problem = build_problem(self._campaign)
-            self._warm_up(problem)
+            warm_up(problem)
             self._raise_first(self._drive(problem))
-            return self._write_fronts(problem)
+            return self._write_fronts(problem, verifier)
 
     def _take_campaign(self) -> None:
         """Check that the store is this campaign's, and write down what it has become."""
@@ -120,11 +103,6 @@ class Runner:
             )
         self._store.write_campaign(self._text)
 
-    def _warm_up(self, problem: Problem) -> None:
-        """Evaluate the middle of the box once, so that compiled code is in the cache before workers want it."""
-        middle = (problem.space.lower + problem.space.upper) / 2
-        problem.simulate(middle[None])
-
     def _drive(self, problem: Problem) -> list[Ending]:
         runs = plan_runs(self._campaign)
         folder = self._store.status_folder
@@ -132,16 +110,9 @@ class Runner:
             folder.mkdir(parents=True, exist_ok=True)
             for old in (folder / STOP_FILE, *folder.glob("*.json")):
                 old.unlink(missing_ok=True)
-        try:
-            with Display(folder, [run.name for run in runs], self._words):
-                return self._drive_with_workers(runs, problem)
-        except TerminatedWorkerError as error:
-            if self._signal is not None:  # which reached a worker before it could ignore it
-                raise self._interrupted(self._signal) from error
-            raise WorkerLostError(
-                f"a worker process was killed, perhaps for want of memory. What was logged is intact. To go on:\n"
-                f"  {self._again}"
-            ) from error
+        self._interruption.check()
+        with self._interruption.workers(), Display(folder, [run.name for run in runs], self._words):
+            return self._drive_with_workers(runs, problem)
 
     def _drive_with_workers(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
         if self._workers == 1:
@@ -176,47 +147,22 @@ class Runner:
     def _work_here(self, run: Run, problem: Problem, simulate: Simulate) -> Ending:
         return work(self._campaign, problem, self._store.folder, run, simulate)
 
-    @contextmanager
-    def _signals(self) -> Iterator[None]:
-        """Turn the first SIGINT or SIGTERM into a request to stop; the second ends everything at once."""
-        stop = self._store.status_folder / STOP_FILE
-
-        def hear(number: int, frame: FrameType | None) -> None:
-            if self._signal is not None:
-                os._exit(128 + number)
-            self._signal = number
-            with suppress(OSError):  # a disk that refuses will be heard of soon enough
-                stop.touch()
-
-        old = {number: signal.signal(number, hear) for number in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in old.items():
-                signal.signal(number, handler)
-
     def _raise_first(self, endings: Sequence[Ending]) -> None:
         for ending in endings:
             if ending.error is not None:
                 raise ending.error
-        if self._signal is not None:
-            raise self._interrupted(self._signal)
+        self._interruption.check()
 
-    def _interrupted(self, number: int) -> InterruptedRunError:
-        return InterruptedRunError(number, self._store.folder, self._again)
-
-    def _write_fronts(self, problem: Problem) -> Outcomes:
-        schema = TableSchema.of(problem)
-        fronts = []
-        for name in sorted(run.name for run in plan_runs(self._campaign)):
-            front = run_front(self._store.log(name, schema).table(), problem, schema)
-            self._store.write_front(name, front)
-            fronts.append(front)
-        combined = combined_front(fronts, problem, schema)
-        self._store.write_front("combined", combined)
+    def _write_fronts(self, problem: Problem, verifier: Verifier) -> Outcomes:
+        schema = verifier.schema
+        names = sorted(run.name for run in plan_runs(self._campaign))
+        fronts = {name: run_front(self._store.log(name, schema).table(), problem, schema) for name in names}
+        combined = combined_front(list(fronts.values()), problem, schema)
+        wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
+        written = verifier.verify(fronts | {"combined": combined}, wanted)
         if combined.num_rows == 0:
             raise NoFeasibleDesignError(
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
             )
-        return Outcomes(self._store, combined.num_rows)
+        return Outcomes(self._store, tally(written["combined"], schema))

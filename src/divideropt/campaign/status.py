@@ -3,7 +3,7 @@
 from collections import Counter
 from dataclasses import dataclass
 
-from divideropt.analysis import best_attainment, hypervolume_history
+from divideropt.analysis import best_attainment, hypervolume_history, tally
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.store import Store, TableSchema
@@ -42,11 +42,15 @@ class StoreStatus:
         campaign: The campaign's name.
         runs: Each run, in the campaign's order.
         front: Designs on the combined front, None before it is written.
+        verified: How many of them came out the same when they were simulated again by the model's reference.
+        deviating: How many did not.
     """
 
     campaign: str
     runs: tuple[RunStatus, ...]
     front: int | None
+    verified: int | None
+    deviating: int | None
 
 
 def read_status(store: Store) -> StoreStatus:
@@ -77,4 +81,7 @@ def read_status(store: Store) -> StoreStatus:
             )
         )
     front = store.read_front("combined", schema)
-    return StoreStatus(campaign.name, tuple(runs), None if front is None else front.num_rows)
+    if front is None:
+        return StoreStatus(campaign.name, tuple(runs), None, None, None)
+    count = tally(front, schema)
+    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate)

@@ -8,12 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import cast
 
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.execute import Simulate, StoppedError, execute
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.plan import Run, build_problem, reference_of
 from divideropt.campaign.progress import Reporter
+from divideropt.campaign.reference import reference_problem
 from divideropt.errors import DivideroptError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
@@ -52,6 +54,18 @@ def simulate_share(text: str, designs: FloatArray) -> Evaluations:
     """Evaluate a share of a batch in a worker process, for a campaign given as resolved text."""
     leave_signals_to_parent()
     return _prepared(text)[1].simulate(designs)
+
+
+def simulate_again(text: str, designs: FloatArray) -> Evaluations:
+    """Evaluate designs by the model's reference in a worker process, for a campaign given as resolved text."""
+    leave_signals_to_parent()
+    return _prepared_reference(text).simulate(designs)
+
+
+def warm_up(problem: Problem) -> None:
+    """Evaluate the middle of the box once, so that compiled code is in the cache before workers want it."""
+    middle = (problem.space.lower + problem.space.upper) / 2
+    problem.simulate(middle[None])
 
 
 def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate: Simulate) -> Ending:
@@ -110,6 +124,12 @@ def _prepared(text: str) -> tuple[Campaign, Problem]:
     """Read a campaign and make its problem, once a process."""
     campaign = parse_campaign(text)
     return campaign, build_problem(campaign)
+
+
+@cache
+def _prepared_reference(text: str) -> Problem:
+    """Make the problem by which the campaign's is verified, which the parent has found to exist."""
+    return cast(Problem, reference_problem(_prepared(text)[1]))
 
 
 def _throttled(question: Callable[[], bool], seconds: float = 0.1) -> Callable[[], bool]:

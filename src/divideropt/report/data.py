@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 import pyarrow as pa
 
-from divideropt.analysis import combined_front, run_front
+from divideropt.analysis import Verified, combined_front, marked, run_front
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.load import stored_campaign
@@ -70,6 +70,7 @@ class ReportData:
         constraints: The constraints, a sentence each.
         runs: The runs, in the campaign's order.
         front: The combined front, the best by goal attainment first.
+        tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
         best: The best of each strategy by goal attainment; empty where there are no goals.
         leanings: The bounds that the front leans on.
@@ -86,6 +87,7 @@ class ReportData:
     constraints: tuple[str, ...]
     runs: tuple[RunFacts, ...]
     front: tuple[Design, ...]
+    tolerance: float
     drawn: tuple[int, ...]
     best: tuple[Design, ...]
     leanings: tuple[Leaning, ...]
@@ -97,6 +99,16 @@ class ReportData:
     def strategies(self) -> tuple[str, ...]:
         """The strategies, in the campaign's order."""
         return tuple(dict.fromkeys(run.strategy for run in self.runs))
+
+    @property
+    def agreeing(self) -> int:
+        """How many designs of the front came out the same when they were simulated again."""
+        return sum(design.verified is Verified.YES for design in self.front)
+
+    @property
+    def deviating(self) -> tuple[Design, ...]:
+        """Those that did not."""
+        return tuple(design for design in self.front if design.verified is Verified.DEVIATES)
 
 
 def read_report(store: Store) -> ReportData:
@@ -122,6 +134,8 @@ def read_report(store: Store) -> ReportData:
     reference = reference_of(campaign)
     facts = tuple(read_run(run, logs[run.name], problem, schema, reference) for run in runs)
     table, notes = _front(store, logs, problem, schema)
+    known = store.verification(schema).table()
+    table = marked(table, known, problem, schema, campaign.verification.share)
     front = designs_of(table, problem, schema, strategies)
     best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
     return ReportData(
@@ -133,6 +147,7 @@ def read_report(store: Store) -> ReportData:
         _constraints(problem),
         facts,
         front,
+        campaign.verification.tolerance,
         _drawn(front),
         best,
         leanings(front, problem.space),

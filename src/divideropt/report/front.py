@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
+from divideropt.analysis import Verified
 from divideropt.models.base import FloatArray
 from divideropt.problem import AGGREGATES, DesignSpace, Problem
 from divideropt.store import TableSchema
+from divideropt.store.schema import deviation_of
 
 NEAR_BOUND = 1e-3
 """Share of a variable's range within which a design lies on the bound."""
@@ -29,6 +31,8 @@ class Design:
         objectives: What is minimised, in the quantities' units; of signed quantities the magnitude.
         attainment: max λ_i of (3.24), or None where an objective has no goal.
         met: Whether each objective's goal is met, None where it has none.
+        verified: What is known of simulating it again by the model's reference.
+        deviation: The largest deviation of an objective there, None where not known.
     """
 
     design_id: str
@@ -38,6 +42,8 @@ class Design:
     objectives: tuple[float, ...]
     attainment: float | None
     met: tuple[bool | None, ...]
+    verified: Verified = Verified.NO
+    deviation: float | None = None
 
 
 @dataclass(frozen=True)
@@ -63,7 +69,7 @@ def designs_of(
     """Read the designs of a front.
 
     Args:
-        table: Feasible evaluations.
+        table: Feasible evaluations; of a front, marked with what is known of each.
         problem: What was optimised.
         schema: The store's columns.
         strategies: The strategy of each run.
@@ -76,6 +82,7 @@ def designs_of(
     attainment = _attainment(objectives, problem)
     order = range(len(objectives)) if attainment is None else np.argsort(attainment, kind="stable").tolist()
     ids, runs = table["design_id"].to_pylist(), table["run"].to_pylist()
+    known = _known(table, schema)
     return tuple(
         Design(
             ids[i],
@@ -85,6 +92,7 @@ def designs_of(
             tuple(objectives[i].tolist()),
             None if attainment is None else float(attainment[i]),
             _met(objectives[i], problem),
+            *known[i],
         )
         for i in order
     )
@@ -113,6 +121,14 @@ def _attainment(objectives: FloatArray, problem: Problem) -> FloatArray | None:
     if any(objective.goal is None for objective in problem.objectives):
         return None
     return AGGREGATES["goal_attainment"](objectives, problem.objectives)
+
+
+def _known(table: pa.Table, schema: TableSchema) -> list[tuple[Verified, float | None]]:
+    if "verified" not in table.column_names:
+        return [(Verified.NO, None)] * table.num_rows
+    deviations = zip(*(table[deviation_of(name)].to_pylist() for name in schema.objectives), strict=True)
+    largest = (max((d for d in row if d is not None), default=None) for row in deviations)
+    return [(Verified(word), value) for word, value in zip(table["verified"].to_pylist(), largest, strict=True)]
 
 
 def _met(row: FloatArray, problem: Problem) -> tuple[bool | None, ...]:

@@ -17,8 +17,11 @@ from divideropt.report.front import Design
 from divideropt.report.palette import marks
 from divideropt.report.responses import Responses
 from divideropt.report.step_figure import step_figure, step_window
-from divideropt.report.tables import best_table, front_table, outcome_table, runs_table
+from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
+
+MOST_DEVIATING = 40
+"""Deviating designs that the page lists above the table, where each is marked."""
 
 
 def write_report(store: Store, out: Path | None = None) -> Path:
@@ -59,7 +62,9 @@ def render_report(data: ReportData) -> str:
             "outcomes": outcome_table(data),
         },
         number=number,
+        verified_words=lambda design: verified_words(design, data),
         most_rows=MOST_ROWS,
+        most_deviating=MOST_DEVIATING,
     )
 
 

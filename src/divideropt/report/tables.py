@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from divideropt.analysis import Verified
 from divideropt.models import Outcome
 from divideropt.report.data import ReportData
 from divideropt.report.display import number
@@ -46,7 +47,24 @@ class Table:
 
 def front_table(data: ReportData, most: int) -> Table:
     """List the designs of the front, the first so many."""
-    return _designs(data, data.front[:most], Heading("design", numeric=False))
+    designs = data.front[:most]
+    table = _designs(data, designs, Heading("design", numeric=False))
+    first, *others = table.headings
+    verified = Heading("verified", title="simulated again by the model's reference", numeric=False)
+    rows = tuple(
+        Row(row.design_id, (row.cells[0], Cell(verified_words(design, data), design.verified), *row.cells[1:]))
+        for row, design in zip(table.rows, designs, strict=True)
+    )
+    return Table((first, verified, *others), rows)
+
+
+def verified_words(design: Design, data: ReportData) -> str:
+    """Say what is known of a design: `yes`, `no`, or how it deviates."""
+    if design.verified is not Verified.DEVIATES:
+        return design.verified
+    if design.deviation is None or 100.0 * design.deviation <= data.tolerance:
+        return "deviates, by its outcome"
+    return f"deviates, by {number(100.0 * design.deviation, 2)} %"
 
 
 def best_table(data: ReportData) -> Table:

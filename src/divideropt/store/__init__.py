@@ -1,7 +1,8 @@
-"""The store on disk: evaluation logs, fronts, the campaign as resolved."""
+"""The store on disk: evaluation logs, fronts and their verification, the campaign as resolved."""
 
 from divideropt.store.log import RunLog
+from divideropt.store.parts import Parts
 from divideropt.store.schema import Role, TableSchema
 from divideropt.store.store import Store
 
-__all__ = ["Role", "RunLog", "Store", "TableSchema"]
+__all__ = ["Parts", "Role", "RunLog", "Store", "TableSchema"]

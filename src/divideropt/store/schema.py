@@ -1,18 +1,37 @@
 """The columns of the tables, with unit, symbol and role in each column's metadata."""
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 import pyarrow as pa
 
-from divideropt.errors import StoreError
+from divideropt.errors import StoreError, UsageError
 from divideropt.models.base import FloatArray, Outcome, Verdict
 from divideropt.problem import Evaluations, Problem
 
-SCHEMA_VERSION = 1
-"""Version of the tables; a store of a later one is refused."""
+SCHEMA_VERSION = 2
+"""Version of the tables; a table of any other is refused.
+
+It grows by one with the first change since the last release after which an older store cannot be read as it was:
+other columns in a log or a front, another meaning of a column, another quantity in a model. Later changes of the same
+release share the number. Version 2: fronts say which points were verified.
+"""
+
+VERIFIED = (
+    "yes: simulated again by the model's reference, every objective's deviation within the campaign's tolerance and "
+    "the outcome the same; deviates: simulated again and not so; no: not simulated again"
+)
+
+DEVIATION_FLOOR = 0.01
+"""Of a quantity's scale: below it a reference value divides no deviation, since an objective may be zero."""
+
+DEVIATION = (
+    "|value - reference| / max(|reference|, 1 % of the quantity's scale), a signed quantity by its value; "
+    "null where not simulated again or not defined"
+)
 
 _VERSION_KEY = b"divideropt.schema_version"
 
@@ -26,6 +45,7 @@ class Role(StrEnum):
     CONSTRAINT = "constraint"
     QUANTITY = "quantity"
     OUTCOME = "outcome"
+    VERIFICATION = "verification"
 
 
 @dataclass(frozen=True)
@@ -36,15 +56,21 @@ class TableSchema:
         arrow: The log's columns in their order, with metadata.
         variables: Names of the variables' columns.
         quantities: Names of the quantities, in the model's order.
+        objectives: Names of those that are objectives.
     """
 
     arrow: pa.Schema
     variables: tuple[str, ...]
     quantities: tuple[str, ...]
+    objectives: tuple[str, ...]
 
     @classmethod
     def of(cls, problem: Problem) -> "TableSchema":
-        """Lay out the columns for a problem."""
+        """Lay out the columns for a problem.
+
+        Raises:
+            UsageError: A name of the model's is that of another column.
+        """
         fields = [
             _text("design_id", Role.KEY),
             _text("run", Role.KEY),
@@ -55,25 +81,46 @@ class TableSchema:
             fields.append(_number(p.name, p.unit, p.symbol, p.description, Role.VARIABLE))
         for name, role in _ordered_quantities(problem):
             q = problem.model.quantities[name]
-            fields.append(_number(q.name, q.unit, q.symbol, q.description, role, signed=q.signed))
+            number = _number(q.name, q.unit, q.symbol, q.description, role, signed=q.signed)
+            fields.append(number.with_type(pa.bool_()) if q.logical else number)
         fields += [_text("outcome", Role.OUTCOME), _text("outcome_text", Role.OUTCOME)]
         arrow = pa.schema(fields, metadata={_VERSION_KEY: str(SCHEMA_VERSION)})
-        return cls(arrow, problem.space.names, tuple(problem.model.quantities))
+        objectives = tuple(o.quantity.name for o in problem.objectives)
+        schema = cls(arrow, problem.space.names, tuple(problem.model.quantities), objectives)
+        _check_names([field.name for field in schema.front] + ["batch"])
+        return schema
 
-    def table(self, run: str, first: int, batch: int, evaluations: Evaluations) -> pa.Table:
-        """Word a batch as rows; NaN becomes null."""
+    @property
+    def results(self) -> pa.Schema:
+        """The log's columns without `batch`: what is known of a design wherever it is listed."""
+        return self.arrow.remove(self.arrow.get_field_index("batch"))
+
+    @property
+    def front(self) -> pa.Schema:
+        """A front's columns: the results, and whether simulating the design again gave the same."""
+        fields = [_text("verified", Role.VERIFICATION, VERIFIED)]
+        fields += [_number(deviation_of(name), "", "", DEVIATION, Role.VERIFICATION) for name in self.objectives]
+        return pa.schema([*self.results, *fields], metadata=self.arrow.metadata)
+
+    def log_rows(self, run: str, first: int, batch: int, evaluations: Evaluations) -> pa.Table:
+        """Word a batch as rows of the log; NaN becomes null."""
         n = len(evaluations)
-        columns: dict[str, object] = {
-            "design_id": [f"{run}/{first + i}" for i in range(n)],
-            "run": [run] * n,
-            "batch": np.full(n, batch),
+        ids = [f"{run}/{first + i}" for i in range(n)]
+        return self._rows(self.arrow, evaluations, design_id=ids, run=[run] * n, batch=np.full(n, batch))
+
+    def result_rows(self, ids: Sequence[str], runs: Sequence[str], evaluations: Evaluations) -> pa.Table:
+        """Word evaluations of named designs as rows of `results`; NaN becomes null."""
+        return self._rows(self.results, evaluations, design_id=ids, run=runs)
+
+    def _rows(self, schema: pa.Schema, evaluations: Evaluations, **keys: object) -> pa.Table:
+        columns: dict[str, object] = keys | {
             "outcome": [str(v.outcome) for v in evaluations.verdicts],
             "outcome_text": [v.text for v in evaluations.verdicts],
         }
         columns |= _columns(self.variables, evaluations.designs)
         columns |= _columns(self.quantities, evaluations.quantities)
-        arrays = [pa.array(columns[f.name], f.type, from_pandas=True) for f in self.arrow]
-        return pa.Table.from_arrays(arrays, schema=self.arrow)
+        arrays = [pa.array(columns[f.name], _given_type(f), from_pandas=True).cast(f.type) for f in schema]
+        return pa.Table.from_arrays(arrays, schema=schema)
 
     def evaluations(self, table: pa.Table) -> Evaluations:
         """Read rows back, bit for bit; null becomes NaN."""
@@ -86,7 +133,7 @@ def check_version(schema: pa.Schema, path: object) -> None:
     """Refuse a table this program does not know.
 
     Raises:
-        StoreError: The table has no version, or a later one.
+        StoreError: The table has no version, or another.
     """
     stated = (schema.metadata or {}).get(_VERSION_KEY)
     if stated is None or not stated.isdigit():
@@ -94,6 +141,25 @@ def check_version(schema: pa.Schema, path: object) -> None:
     if int(stated) > SCHEMA_VERSION:
         raise StoreError(
             f"{path}: schema version {int(stated)}, this program knows up to {SCHEMA_VERSION}; use a later divideropt"
+        )
+    if int(stated) < SCHEMA_VERSION:
+        raise StoreError(
+            f"{path}: schema version {int(stated)}, this program writes {SCHEMA_VERSION}; go on with the divideropt "
+            "that made it, or start anew (--fresh, which moves the old store aside)"
+        )
+
+
+def deviation_of(objective: str) -> str:
+    """Name the column that holds an objective's deviation."""
+    return f"deviation_{objective}"
+
+
+def _check_names(names: Iterable[str]) -> None:
+    twice = [name for name, count in Counter(names).items() if count > 1]
+    if twice:
+        raise UsageError(
+            f"{', '.join(twice)}: the model gives this name to a parameter or a quantity, and it is that of another "
+            "column of the store; rename it in the model"
         )
 
 
@@ -107,8 +173,9 @@ def _ordered_quantities(problem: Problem) -> Iterable[tuple[str, Role]]:
     return roles.items()
 
 
-def _text(name: str, role: Role) -> pa.Field:
-    return pa.field(name, pa.string(), nullable=False, metadata={"role": role})
+def _text(name: str, role: Role, description: str = "") -> pa.Field:
+    metadata = {"role": role} | ({"description": description} if description else {})
+    return pa.field(name, pa.string(), nullable=False, metadata=metadata)
 
 
 def _number(name: str, unit: str, symbol: str, description: str, role: Role, *, signed: bool = False) -> pa.Field:
@@ -116,6 +183,11 @@ def _number(name: str, unit: str, symbol: str, description: str, role: Role, *, 
     if signed:
         metadata["objective"] = "acts on the magnitude; the column is signed"
     return pa.field(name, pa.float64(), metadata=metadata)
+
+
+def _given_type(field: pa.Field) -> pa.DataType:
+    """The type in which a column's values come: a logical quantity is 1 or 0 until it is in a table."""
+    return pa.float64() if pa.types.is_boolean(field.type) else field.type
 
 
 def _verdict(outcome: str, text: str) -> Verdict:
@@ -131,5 +203,5 @@ def _columns(names: tuple[str, ...], matrix: FloatArray) -> dict[str, FloatArray
 def _matrix(table: pa.Table, names: tuple[str, ...]) -> FloatArray:
     if not names:
         return np.empty((table.num_rows, 0))
-    columns = [table[name].to_numpy(zero_copy_only=False) for name in names]
+    columns = [table[name].cast(pa.float64()).to_numpy(zero_copy_only=False) for name in names]
     return np.column_stack([np.asarray(c, dtype=np.float64) for c in columns])

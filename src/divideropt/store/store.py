@@ -6,13 +6,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 from filelock import FileLock, Timeout
 
 from divideropt.errors import StoreError, StoreInUseError, UsageError
 from divideropt.store.files import disk_errors, publish
 from divideropt.store.log import RunLog
-from divideropt.store.schema import TableSchema, check_version
+from divideropt.store.parts import Parts
+from divideropt.store.schema import TableSchema
+from divideropt.store.tables import read_table, write_table
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
@@ -87,28 +88,21 @@ class Store:
 
     def write_front(self, name: str, table: pa.Table) -> None:
         """Replace a front; `name` is a run's, or `combined`."""
-        path = self._front_path(name)
-        with disk_errors(path.parent):
-            path.parent.mkdir(parents=True, exist_ok=True)
-        publish(path, lambda p: pq.write_table(table, p, write_page_checksum=True))
+        write_table(self._front_path(name), table)
 
     def read_front(self, name: str, schema: TableSchema) -> pa.Table | None:
         """Read a front, or None if it has not been written.
 
         Raises:
-            StoreError: It is damaged, of a later version, or not this campaign's.
+            StoreError: It is damaged, of another version, or not this campaign's.
         """
         path = self._front_path(name)
-        if not path.is_file():
-            return None
-        try:
-            table = pq.ParquetFile(path, page_checksum_verification=True).read()
-        except (pa.ArrowException, OSError) as error:
-            raise StoreError(f"{path}: damaged ({error}); delete it and run the campaign again") from error
-        check_version(table.schema, path)
-        if not table.schema.equals(schema.arrow.remove(schema.arrow.get_field_index("batch"))):
-            raise StoreError(f"{path}: its columns are not this campaign's; delete it and run the campaign again")
-        return table
+        return read_table(path, schema.front, "delete it and run the campaign again") if path.is_file() else None
+
+    def verification(self, schema: TableSchema) -> Parts:
+        """Open the results of simulating front points again, in the order in which that was done."""
+        folder = self.folder / "verification"
+        return Parts(folder, schema.results, f"restore it, or delete {folder}, and its points are simulated again")
 
     @contextmanager
     def writing(self) -> Iterator[None]:

@@ -1,0 +1,189 @@
+"""Front points simulated again by the model's reference, and the fronts marked with what came out."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TextIO
+
+import numpy as np
+import pyarrow as pa
+from joblib import Parallel, delayed, parallel_config
+
+from divideropt.analysis import Tally, marked, tally
+from divideropt.campaign.config import Campaign
+from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.interrupt import Interruption
+from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.campaign.progress import Counter
+from divideropt.campaign.reference import reference_problem
+from divideropt.campaign.worker import STOP_FILE, simulate_again, warm_up
+from divideropt.errors import NoFeasibleDesignError, UsageError
+from divideropt.models.base import FloatArray
+from divideropt.problem import Evaluations, Problem
+from divideropt.store import Store, TableSchema
+
+
+def verify_store(store: Store, workers: int | None, words: TextIO, again: str) -> Tally:
+    """Verify every point of every front of a store, or go on where that stopped.
+
+    Args:
+        store: The store.
+        workers: Processes at a time; the campaign's where None.
+        words: Where progress is shown.
+        again: The command that goes on if this one is stopped.
+
+    Returns:
+        The count over all points, each counted once.
+
+    Raises:
+        UsageError: There is no store, no front in it yet, or the model offers no reference.
+        StoreInUseError: Another process writes to the store.
+        StoreError: The store is damaged.
+        DiskError: The disk refused.
+        InterruptedRunError: A signal stopped it.
+        WorkerLostError: A worker process died.
+        NoFeasibleDesignError: The fronts are empty.
+    """
+    campaign = stored_campaign(store)
+    problem = build_problem(campaign)
+    interruption = Interruption(store.folder, again, store.status_folder / STOP_FILE)
+    verifier = Verifier(campaign, problem, store, workers or campaign.parallel.workers, words, interruption)
+    if not verifier.possible:
+        raise UsageError(
+            f"{store.folder}: the model offers no reference(), by which its results could be verified; "
+            "`divideropt.models.Verifiable` says what it is"
+        )
+    with store.writing(), interruption.signals():
+        fronts = _stored_fronts(store, campaign, verifier.schema)
+        points = list(dict.fromkeys(name for front in fronts.values() for name in front["design_id"].to_pylist()))
+        if not points:
+            raise NoFeasibleDesignError(
+                f"{store.folder}: no design is feasible, so the fronts are empty and there is nothing to verify; "
+                "`divideropt status` says how the simulations ended"
+            )
+        warm_up(problem)
+        return tally(_distinct(verifier.verify(fronts, points).values()), verifier.schema)
+
+
+class Verifier:
+    """Simulates front points of one store again; what it finds is kept, and no point is simulated a third time."""
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        problem: Problem,
+        store: Store,
+        workers: int,
+        words: TextIO,
+        interruption: Interruption,
+    ) -> None:
+        """Prepare; nothing is simulated yet.
+
+        Args:
+            campaign: As resolved.
+            problem: Made from it.
+            store: Its store, which the caller holds for writing.
+            workers: Processes at a time.
+            words: Where progress is shown.
+            interruption: Hears the signals.
+
+        Raises:
+            UsageError: The model's reference is wrong.
+        """
+        self.schema = TableSchema.of(problem)
+        self._text = dump_campaign(campaign)
+        self._tolerance = campaign.verification.share
+        self._problem, self._reference = problem, reference_problem(problem)
+        self._store = store
+        self._workers = 1 if campaign.parallel.backend == "sequential" else workers
+        self._words, self._interruption = words, interruption
+
+    @property
+    def possible(self) -> bool:
+        """Whether the model offers a reference."""
+        return self._reference is not None
+
+    def verify(self, fronts: Mapping[str, pa.Table], wanted: Sequence[str]) -> dict[str, pa.Table]:
+        """Simulate points again, and write the fronts with what is known of each of theirs.
+
+        Args:
+            fronts: All the store's, by name.
+            wanted: The `design_id` of the points; those simulated again before are not once more.
+
+        Returns:
+            The fronts as written.
+
+        Raises:
+            StoreError: What was kept is damaged, or of other designs.
+            DiskError: The disk refused.
+            InterruptedRunError: A signal stopped it; the fronts say what was known before.
+            WorkerLostError: A worker process died.
+        """
+        log = self._store.verification(self.schema)
+        known = log.table()
+        written = self._write(fronts, known)
+        if self._reference is None:
+            print("the model offers no reference(), so the fronts say `verified: no`", file=self._words)
+            return written
+        before = set(known["design_id"].to_pylist())
+        missing = [name for name in wanted if name not in before]
+        if not missing:
+            return written
+        points = _named(_distinct(fronts.values()), missing)
+        again = self._simulate(self._reference, self.schema.evaluations(points).designs)
+        fresh = [known]
+        try:
+            with Counter("verifying: {} of {} front points simulated again", len(missing), self._words) as counter:
+                for row, evaluations in enumerate(again):
+                    names, runs = (points.slice(row, 1)[key].to_pylist() for key in ("design_id", "run"))
+                    fresh.append(self.schema.result_rows(names, runs, evaluations))
+                    log.append(fresh[-1])
+                    counter.advance()
+        finally:
+            log.flush()
+        self._interruption.check()
+        return self._write(fronts, pa.concat_tables(fresh))
+
+    def _write(self, fronts: Mapping[str, pa.Table], known: pa.Table) -> dict[str, pa.Table]:
+        made = {
+            name: marked(front, known, self._problem, self.schema, self._tolerance) for name, front in fronts.items()
+        }
+        for name, front in made.items():
+            self._store.write_front(name, front)
+        return made
+
+    def _simulate(self, reference: Problem, designs: FloatArray) -> Iterator[Evaluations]:
+        """Yield what the reference says of each design, in their order, until somebody asks to stop."""
+        asked = self._until_stopped(designs)
+        if self._workers == 1:
+            yield from (reference.simulate(design[None]) for design in asked)
+            return
+        with parallel_config(backend="loky", inner_max_num_threads=1), self._interruption.workers():
+            pool = Parallel(n_jobs=self._workers, return_as="generator", batch_size=1, pre_dispatch="2*n_jobs")
+            yield from pool(delayed(simulate_again)(self._text, design[None]) for design in asked)
+
+    def _until_stopped(self, designs: FloatArray) -> Iterator[FloatArray]:
+        for design in designs:
+            if self._interruption.heard:
+                return
+            yield design
+
+
+def _stored_fronts(store: Store, campaign: Campaign, schema: TableSchema) -> dict[str, pa.Table]:
+    """Read the fronts, the combined one first, whose points are wanted most."""
+    names = ("combined", *(run.name for run in plan_runs(campaign)))
+    found = {name: store.read_front(name, schema) for name in names}
+    if found["combined"] is None:
+        raise UsageError(f"{store.folder}: there are no fronts yet; run the campaign to its end first")
+    return {name: front for name, front in found.items() if front is not None}
+
+
+def _distinct(fronts: Iterable[pa.Table]) -> pa.Table:
+    """List the points of several fronts, each once."""
+    together = pa.concat_tables(fronts)
+    _, first = np.unique(together["design_id"].to_pylist(), return_index=True)
+    return together.take(pa.array(np.sort(first)))
+
+
+def _named(points: pa.Table, names: Sequence[str]) -> pa.Table:
+    place = {name: row for row, name in enumerate(points["design_id"].to_pylist())}
+    return points.take(pa.array([place[name] for name in names]))
