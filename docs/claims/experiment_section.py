@@ -1,0 +1,258 @@
+"""Section B of the page: the trends of Chapter 4, with what was assumed and what the rig can tell apart."""
+
+from collections.abc import Iterator, Sequence
+
+from claims import resolution
+from claims.experiment import ASSUMED, CASES
+from claims.judgement import Answers
+from claims.pilot_line import SHARES, ratio_with_line_loss
+from claims.tables import table
+from claims.trends import POSITIONS, TRENDS, Tests, assumed, drop_exponent, run_tests
+from divideropt.models.divider import FORMULATIONS, PARAMETERS, rig
+
+BULK_MODULUS = PARAMETERS["bulk_modulus"].default
+"""Of the oil, Appendix B [Pa]."""
+
+
+def experiment_section(answers: Answers) -> Iterator[str]:
+    """Return the lines of the section, and note every answer by formulation."""
+    yield "## B. Chapter 4: the experiment"
+    yield ""
+    yield from _assumptions()
+    yield from _resolution()
+    yield "### The trends"
+    yield ""
+    yield (
+        f"Each over the {len(CASES)} cases of assumptions below. *Yes* and *no* where all cases agree; else *in "
+        "part*, with the cases that differ."
+    )
+    yield ""
+    for number, trend in enumerate(TRENDS, 1):
+        yield f"**B{number}.** “{trend.quotation}” ({trend.place})  "
+        yield f"*{trend.criterion}*"
+        yield ""
+        judged = {name: trend.judged(name) for name in FORMULATIONS}
+        for name, judgement in judged.items():
+            answers[name].append(judgement.answer)
+        if trend.judge is not None:
+            yield from table(["", "answer"], [[name, str(j)] for name, j in judged.items()])
+            yield ""
+    yield from _cases()
+    yield from _rotation()
+    yield from _litres()
+
+
+def _assumptions() -> Iterator[str]:
+    yield "### What was assumed"
+    yield ""
+    yield (
+        "Said: the valve is the prototype of B.2; Qs = 4.96×10⁻⁴ m³/s, from a load-sensing pump; the drops over the "
+        "fixed orifices, external and adjustable; the load differences; counterbalance valves as loads, of which "
+        "that of branch 1 is bypassed to make the step. Not said: the load pressures themselves, any volume "
+        "(“greatly increased”, section 4.1), the oil’s temperature in the tests, friction, the loss in the pilot "
+        "line, the angle of the rotation, the number of tests averaged and the length of their records. For these we "
+        "assume:"
+    )
+    yield ""
+    yield (
+        "- **Ports**: the prototype’s. The fixed orifices alone change between tests: each is sized to have the "
+        "stated drop at half of Qs, ΔPt and ΔPo/ΔPt following so that the ports’ radius stays."
+    )
+    yield (
+        f"- **Load pressures**: the bypassed branch keeps {1e-6 * ASSUMED.back_pressure:g} MPa (lines and flow "
+        "meter); the other, and both before the step, lie above it by the load difference, as E.3 sets them. Tried "
+        "too: 0.3 and 3 MPa, and 4.83 MPa before the step, where Table E.2 states its errors."
+    )
+    yield (
+        "- **Loads** are orifices, as in section 3.1; a counterbalance valve would hold its pressure more nearly "
+        "constant. The step is a step, though Figure 4.5 shows that it was not."
+    )
+    yield (
+        f"- **Volumes**: chambers and load lines {ASSUMED.volumes:g} times those of B.2 (0.08 L and 0.03 L: 0.7 m "
+        "and 0.25 m of 12 mm bore). Tried too: ×1 and ×100. Source volume 1 L as in B.2; tried too: 0.1 and 10 L."
+    )
+    yield (
+        "- **Friction** 0; tried too: 1, 3 and 10 N (3 since the first runs showed the sign to turn between 1 and "
+        "10), from the frictionless equilibrium. **Oil** 30 mm²/s as in B.2; tried too: 15, its value at 60 °C. "
+        "**Pilot line**: no loss; the model has no such line."
+    )
+    yield (
+        "- **Direction**: load 1 drops, as section 4.3 says; tried too: that it rises, as in Chapter 3. None of all "
+        "this was fitted to the measurements."
+    )
+    yield ""
+
+
+def _resolution() -> Iterator[str]:
+    counts = (1, 250, resolution.READINGS, 7500)
+    yield "### What the rig can tell apart"
+    yield ""
+    yield (
+        "From Appendix E (`divideropt.models.divider.rig`), with 90 % confidence, for (QL1 − QL2)/Qs: a bias of "
+        f"±{resolution.steady_bias():.1f} %, more than any error in the tables, which goes out of a difference "
+        "between rows as far as it stays the same; and a random part that averaging reduces:"
+    )
+    yield ""
+    rows = [[str(n), f"±{resolution.steady_noise(n):.2f} %", f"{resolution.steady_step(n):.2f} %"] for n in counts]
+    yield from table(["readings averaged", "random part", "two rows told apart from"], rows)
+    yield ""
+    yield (
+        f"The thesis does not say how many were averaged. We judge as if {resolution.REPEATS} tests of "
+        f"{resolution.STEADY_SECONDS:g} s at 250 Hz with independent noise, {resolution.READINGS} readings:"
+    )
+    yield ""
+    yield from table(["table", "rows", "difference", "told apart", "readings needed for that"], list(_pairs()))
+    yield ""
+    yield (
+        "Dynamic errors: a constant bias goes out of (3.10), but the meters’ gain may be off by "
+        f"{100 * max(e.bias() / rig.FLOW_ERROR_AT for e in rig.FLOW_ERRORS.values()):.1f} %, so that two rows are "
+        f"told apart from {1e3 * resolution.volume_step(rig.TABLE_4_1[0].dynamic_error):.3f} L in Table 4.1 (all "
+        f"rows) and {1e3 * resolution.volume_step(rig.TABLE_4_2[1].dynamic_error):.3f} L in Table 4.2 (the first "
+        "from the others; not −0.430 from −0.425). How an end within 2 % was found under a noise of 6 % is not said."
+    )
+    yield ""
+
+
+def _pairs() -> Iterator[list[str]]:
+    for number, rows in (("4.1", rig.TABLE_4_1), ("4.2", rig.TABLE_4_2)):
+        for first, second in ((0, 1), (1, 2), (0, 2)):
+            a, b = rows[first].steady_error, rows[second].steady_error
+            apart = "yes" if abs(a - b) > resolution.steady_step() else "no"
+            yield [number, f"{a} and {b} %", f"{abs(a - b):.2f} %", apart, str(resolution.readings_for(abs(a - b)))]
+
+
+def _cases() -> Iterator[str]:
+    yield "### The cases"
+    yield ""
+    yield (
+        "Signed errors (3.5) and dynamic errors (3.10), in millilitres, at the three rows of each table. Measured: "
+        f"{_measured(rig.TABLE_4_1)} (Table 4.1), {_measured(rig.TABLE_4_2)} (Table 4.2)."
+    )
+    yield ""
+    for name in FORMULATIONS:
+        yield f"`{name}`:"
+        yield ""
+        rows = []
+        for case in CASES:
+            tests = run_tests(name, case)
+            bad = sorted({p.outcome.value for p in (*tests.drops, *tests.loads)} - {"ok"})
+            cells = [
+                cell
+                for points in (tests.drops, tests.loads)
+                for cell in (
+                    ", ".join(f"{p.error:.2f}" for p in points),
+                    ", ".join(f"{1e6 * p.dynamic:.2f}" for p in points),
+                )
+            ]
+            rows.append([case.name + (f" ({', '.join(bad)})" if bad else ""), *cells])
+        yield from table(["", "Table 4.1: error [%]", "dynamic [mL]", "Table 4.2: error [%]", "dynamic [mL]"], rows)
+        yield ""
+    yield from _remarks()
+
+
+def _measured(rows: Sequence[rig.MeasuredRow]) -> str:
+    errors = ", ".join(f"{row.steady_error:g}" for row in rows)
+    volumes = ", ".join(f"{1e6 * row.dynamic_error:.0f}" for row in rows)
+    return f"{errors} % and {volumes} mL"
+
+
+def _remarks() -> Iterator[str]:
+    measured = drop_exponent([row.steady_error for row in rig.TABLE_4_1])
+    ours = ", ".join(
+        f"{name} {drop_exponent([abs(p.error) for p in assumed(name).drops]):.2f}" for name in FORMULATIONS
+    )
+    yield (
+        f"How fast the error falls with the drop: as its power {measured:.2f} measured, {ours} as assumed, −1 by "
+        "Kwan. The order agrees, the strength does not. Friction of 3 N takes at least "
+        f"{100 * _share_off(3.0):.0f} % off every error of Table 4.1, 10 N turns the sign: while it is unknown, "
+        "Tables 4.1 and 4.2 test no more than order."
+    )
+    yield ""
+
+
+def _share_off(friction: float) -> float:
+    """Return the least part that friction [N] takes off a frictionless error of Table 4.1, over the formulations."""
+    case = next(case for case in CASES if case.friction == friction)
+    pairs = [
+        (free.error, stuck.error)
+        for name in FORMULATIONS
+        for free, stuck in zip(assumed(name).drops, run_tests(name, case).drops, strict=True)
+    ]
+    return min(1 - abs(stuck) / abs(free) for free, stuck in pairs)
+
+
+def _rotation() -> Iterator[str]:
+    yield "### Rotation"
+    yield ""
+    yield (
+        "QL1/QL2 after the step at Figure 4.8’s mean drop (553 kPa) and load difference (1649 kPa), as assumed, "
+        "beside (2.6); and the change of QL1’s share over the step, which rotation cannot remove:"
+    )
+    yield ""
+    tests: dict[str, Tests] = {name: assumed(name) for name in FORMULATIONS}
+    rows = []
+    for i, position in enumerate(POSITIONS):
+        points = [tests[name].rotated[i] for name in FORMULATIONS]
+        cells = [f"{p.ratio:.3f} ({p.regulation:+.2f} %)" for p in points]
+        rows.append([f"{position}", f"{ratio_with_line_loss(position, 0.0):.3f}", *cells])
+    yield from table(["φ/φ0", "(2.6)", *FORMULATIONS], rows)
+    yield ""
+    yield (
+        "The pilot line’s loss, in the ideal analysis: the pilot stage sees Ps less the loss. Its share of the drop "
+        "over a fixed orifice is not known; with any, the ratio goes towards 1, as section 4.7 says:"
+    )
+    yield ""
+    rows = [[f"{p}", *(f"{ratio_with_line_loss(p, share):.3f}" for share in SHARES)] for p in POSITIONS]
+    yield from table(["φ/φ0", *(f"loss {100 * share:.0f} %" for share in SHARES)], rows)
+    yield ""
+
+
+def _litres() -> Iterator[str]:
+    yield "### Litres"
+    yield ""
+    yield (
+        "(3.10) adds up QL1 − QL2 less its final value. With all of Qs in one branch that is at most Qs, with one "
+        "branch off by its half of the flow at most Qs/2 = 2.5×10⁻⁴ m³/s. So the dynamic errors of the tables take "
+        "at least:"
+    )
+    yield ""
+    rows = []
+    for row, point in zip(rig.TABLE_4_1, assumed("conservative").drops, strict=True):
+        volume = abs(row.dynamic_error)
+        stored = volume * BULK_MODULUS / row.load_difference
+        rows.append(
+            [
+                f"{1e-3 * row.fixed_drop:.0f} kPa",
+                f"{1e3 * volume:.3f} L",
+                f"{volume / rig.SOURCE_FLOW:.2f} s",
+                f"{volume / (rig.SOURCE_FLOW / 2):.2f} s",
+                f"{1e3 * abs(point.dynamic):.4f} L in {point.settling:.2f} s",
+                f"{volume / abs(point.dynamic):.0f}",
+                f"{1e3 * stored:.0f} L",
+            ]
+        )
+    header = [
+        "drop",
+        "measured",
+        "all of Qs astray",
+        "Qs/2 astray",
+        "`conservative`",
+        "measured over it",
+        "oil to store it",
+    ]
+    yield from table(header, rows)
+    yield ""
+    yield (
+        "The last column is the volume of oil whose compression by the load difference, at Appendix B’s 1 GPa, would "
+        "take up the dynamic error: hundreds of litres. Over all formulations and cases the model settles within "
+        f"{_longest():.2f} s. Counterbalance valves that take seconds to answer (the footnote of section 4.3, Figure "
+        "4.5) could send flow astray as long; nothing printed lets one judge that. The absolute dynamic errors are "
+        "**not explained**: order and direction alone are judged."
+    )
+    yield ""
+
+
+def _longest() -> float:
+    """Return the longest settling time [s] of all tests, over all formulations and cases."""
+    every = (run_tests(name, case) for name in FORMULATIONS for case in CASES)
+    return max(point.settling for tests in every for point in (tests.first, *tests.drops, *tests.loads))
