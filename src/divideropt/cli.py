@@ -178,6 +178,23 @@ def simulate(campaign: Path | None, settings: tuple[str, ...], out: Path | None)
 
 
 @commands.command()
+@click.argument("campaign", type=_FILE, required=False)
+@click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
+)
+@click.option("--out", type=_FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
+def error_budget(campaign: Path | None, settings: tuple[str, ...], out: Path | None) -> None:
+    """Say what the steady-state error of one design is made of, in percent."""
+    asked = _load(campaign)
+    _check_out(out, (".csv", ".parquet"))
+    from divideropt.campaign.budget import budget_table
+
+    table, verdict = budget_table(asked, settings)
+    _write_table(table, out)
+    _say(f"outcome: {verdict.outcome} {verdict.text}".rstrip())
+
+
+@commands.command()
 @click.argument("campaign", type=_FILE)
 def check(campaign: Path) -> None:
     """Read a campaign and say every mistake in it, or what it would run."""

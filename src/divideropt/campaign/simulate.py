@@ -1,5 +1,6 @@
 """One response as a table: the work of `divideropt simulate`."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ from divideropt.campaign.plan import base_divider, build_model
 from divideropt.errors import UsageError
 from divideropt.models import Outcome, Verdict
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import PARAMETERS
+from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Response
 from divideropt.units import parse_measure
@@ -62,10 +63,7 @@ def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
     Raises:
         UsageError: A setting is no parameter, or out of its domain; or the model has no response to show.
     """
-    model = base_divider(build_model(campaign))
-    if model is None:
-        raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
-    parameters = campaign.model.base_parameters() | dict(_read(setting) for setting in settings)
+    model, parameters = chosen_design(campaign, settings)
     try:
         with np.errstate(all="ignore"):  # a failed design says so by its outcome
             response = model.respond(parameters)
@@ -73,6 +71,26 @@ def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
         verdict = Verdict(Outcome.CRASHED, f"the model broke down: {type(error).__name__}: {error}")
         return SimulatedResponse(pd.DataFrame(columns=list(COLUMNS), dtype=float), verdict)
+
+
+def chosen_design(campaign: Campaign, settings: Sequence[str]) -> tuple[Divider, dict[str, float]]:
+    """Return a campaign's divider, and one design's parameters by name, SI.
+
+    Args:
+        campaign: Whose model, scenario and parameters.
+        settings: `NAME=VALUE` with a unit, for parameters that differ.
+
+    Raises:
+        UsageError: A setting is no parameter, out of its domain, or given twice; or the model is not the divider.
+    """
+    model = base_divider(build_model(campaign))
+    if model is None:
+        raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
+    given = [_read(setting) for setting in settings]
+    twice = [name for name, count in Counter(name for name, _ in given).items() if count > 1]
+    if twice:
+        raise UsageError(f"--set {twice[0]}: given more than once; say it once")
+    return model, campaign.model.base_parameters() | dict(given)
 
 
 def _table(response: Response) -> pd.DataFrame:

@@ -1,15 +1,18 @@
 """Equilibria of the valve: states at which every rate vanishes, and how stable they are.
 
-A damped Newton method on the analytic Jacobian does the work. Where it fails, the valve is let go until it is nearly
-at rest; where that fails too, the equilibrium is bracketed: with the spool held at a position the pressures are the
-solution of a network of monotone resistances, and what remains is the root of one force over the stroke.
+A damped Newton method on the analytic Jacobian does the work. Where it fails, SciPy's hybrid method is asked; where
+that fails, the valve is let go until it is nearly at rest, a pseudo-transient with the true masses and volumes; and
+where that fails too, the equilibrium is bracketed: with the spool held at a position the pressures are the solution
+of a network of monotone resistances, and what remains is the root of one force over the stroke.
+`benchmarks/equilibria.py` counts how often each is needed.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import PortRange, Stop
@@ -42,6 +45,9 @@ RELAXATION_STEPS = 1500
 BRACKETS = 64
 """Intervals of the stroke searched for a sign change of the force where Newton fails."""
 
+_SIZES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 1e-2, 1e-3, 1e7, 1e7])
+"""What the hybrid method counts the states in, so that its steps are alike."""
+
 _XDOT, _X = STATES.index("xdot"), STATES.index("x")
 _FREE = np.array([i for i in range(N_STATES) if i != _XDOT])
 _BALANCES = np.array([i for i in range(N_STATES) if i != _X])
@@ -55,10 +61,12 @@ class Equilibrium:
     Attributes:
         state: Shape (9,).
         residual: Largest scaled residual.
+        method: What led to it: `newton`, `hybrid`, `transient`, `bracket`, or `rigid stop`.
     """
 
     state: FloatArray
     residual: float
+    method: str
 
 
 def find_equilibrium(design: Design, start: FloatArray) -> Equilibrium | None:
@@ -73,7 +81,11 @@ def find_equilibrium(design: Design, start: FloatArray) -> Equilibrium | None:
     """
     if rests_on_stop(design, start) and design[0].stop == Stop.FROZEN:
         return rest_on_rigid_stop(design, start)
-    return _polished(design, start) or _let_go(design, start) or _bracketed(design, start)
+    for method, search in _SEARCHES.items():
+        found = search(design, start)
+        if found is not None:
+            return replace(found, method=method)
+    return None
 
 
 def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
@@ -92,8 +104,22 @@ def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
     for x in sorted((-stop, stop), key=lambda place: abs(place - start[_X])):
         state = _hold(design, initial_guess(design), x)
         if state is not None and rates(0.0, state, design)[_XDOT] * x >= 0:
-            return Equilibrium(state, 0.0)
+            return Equilibrium(state, 0.0, "rigid stop")
     return None
+
+
+def force_profile(design: Design, count: int) -> tuple[FloatArray, FloatArray]:
+    """Hold the spool at places over the stroke, and return them [m] and the force on it [N].
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        count: Number of places.
+
+    Returns:
+        Both of shape (count,); the force is NaN where the pressures cannot be solved for.
+    """
+    places, _, accelerations = _profile(design, count)
+    return places, accelerations * design[0].mass
 
 
 def rests_on_stop(design: Design, state: FloatArray) -> bool:
@@ -137,6 +163,27 @@ def _polished(design: Design, start: FloatArray) -> Equilibrium | None:
     return found if found is not None and abs(found.state[_X]) <= _reach(design) else None
 
 
+def _hybrid(design: Design, start: FloatArray) -> Equilibrium | None:
+    """Let SciPy's modification of Powell's hybrid method come near the root, then go to it by Newton."""
+    y = start.copy()
+    y[_XDOT] = 0.0
+    scale = _residual_scales(design, y)[_BALANCES]
+
+    def residual(unknowns: FloatArray) -> FloatArray:
+        y[_FREE] = unknowns * _SIZES[_FREE]
+        return np.asarray(rates(0.0, y, design)[_BALANCES] / scale)
+
+    def slopes(unknowns: FloatArray) -> FloatArray:
+        y[_FREE] = unknowns * _SIZES[_FREE]
+        return np.asarray(jacobian(0.0, y, design)[np.ix_(_BALANCES, _FREE)] / scale[:, None] * _SIZES[_FREE])
+
+    solution = root(residual, y[_FREE] / _SIZES[_FREE], jac=slopes, method="hybr")
+    if not np.isfinite(solution.x).all():
+        return None
+    y[_FREE] = solution.x * _SIZES[_FREE]
+    return _polished(design, y)
+
+
 def _let_go(design: Design, start: FloatArray) -> Equilibrium | None:
     """Let the valve move until it is nearly at rest, then go to the root by Newton."""
     settings = SolverSettings("LSODA", RELAXATION_RTOL, (RELAXATION_RTOL * 1e3,) * N_STATES, RELAXATION_STEPS)
@@ -166,7 +213,7 @@ def _newton(
         if not np.isfinite(size):
             return None
         if size <= TOLERANCE:
-            return Equilibrium(y, size)
+            return Equilibrium(y, size, "newton")
         matrix = jacobian(0.0, y, design)[np.ix_(balances, unknowns)] / scale[:, None]
         step = _solve(matrix, -residual)
         if step is None:
@@ -183,16 +230,13 @@ def _newton(
                 y, residual, size, improved = trial, trial_residual, trial_size, True
                 break
         if not improved:
-            return Equilibrium(y, size) if size <= 1e3 * TOLERANCE else None
+            return Equilibrium(y, size, "newton") if size <= 1e3 * TOLERANCE else None
     return None
 
 
 def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
     """Search the stroke for a sign change of the force, nearest to the start first."""
-    reach = _reach(design)
-    places = np.linspace(-reach, reach, BRACKETS + 1)
-    held = _held_states(design, start, places)
-    forces = np.array([np.nan if y is None else rates(0.0, y, design)[_XDOT] for y in held])
+    places, held, forces = _profile(design, BRACKETS + 1)
     crossing = np.flatnonzero(np.sign(forces[:-1]) * np.sign(forces[1:]) <= 0)
     for i in sorted(crossing, key=lambda k: abs(places[k] - start[_X])):
         guess = held[i]
@@ -205,6 +249,14 @@ def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
     return None
 
 
+def _profile(design: Design, count: int) -> tuple[FloatArray, list[FloatArray | None], FloatArray]:
+    """Places over the stroke, the states with the spool held there, and the force on it per mass."""
+    reach = _reach(design)
+    places = np.linspace(-reach, reach, count)
+    held = _held_states(design, places)
+    return places, held, np.array([np.nan if y is None else rates(0.0, y, design)[_XDOT] for y in held])
+
+
 def _root_between(design: Design, guess: FloatArray, left: float, right: float) -> FloatArray | None:
     """Find where the force on the held spool vanishes; None where the pressures cannot be solved on the way."""
     try:
@@ -214,7 +266,7 @@ def _root_between(design: Design, guess: FloatArray, left: float, right: float) 
     return _hold(design, guess, float(x))
 
 
-def _held_states(design: Design, start: FloatArray, places: FloatArray) -> list[FloatArray | None]:
+def _held_states(design: Design, places: FloatArray) -> list[FloatArray | None]:
     """Solve the pressures with the spool held at each place, each from its neighbour's."""
     states: list[FloatArray | None] = []
     guess = initial_guess(design)
@@ -268,3 +320,12 @@ def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     except np.linalg.LinAlgError:
         return None
     return step if np.isfinite(step).all() else None
+
+
+_SEARCHES: Mapping[str, Callable[[Design, FloatArray], Equilibrium | None]] = {
+    "newton": _polished,
+    "hybrid": _hybrid,
+    "transient": _let_go,
+    "bracket": _bracketed,
+}
+"""How an equilibrium is sought, in this order."""

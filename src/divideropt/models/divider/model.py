@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
-from divideropt.models.divider.formulations import FORMULATIONS
+from divideropt.models.divider.formulations import FORMULATIONS, Formulation
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import quantities_of
 from divideropt.models.divider.response import Response, respond
 from divideropt.models.divider.scenario import Scenario
-from divideropt.models.divider.tolerances import solver_settings
+from divideropt.models.divider.tolerances import resolving_friction, solver_settings
 from divideropt.ode import SolverSettings
 
 REFERENCE_METHOD = "Radau"
@@ -36,6 +36,11 @@ class Divider:
     scenario: Scenario = field(default_factory=Scenario)
     settings: SolverSettings = field(default_factory=solver_settings)
     groove_loss: bool = False
+
+    @property
+    def reading(self) -> Formulation:
+        """The formulation, with its options."""
+        return replace(FORMULATIONS[self.formulation], groove_loss=self.groove_loss)
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -69,7 +74,12 @@ class Divider:
             self, settings=solver_settings(REFERENCE_METHOD, REFERENCE_RTOL, max_steps=REFERENCE_MAX_STEPS)
         )
 
-    def respond(self, parameters: Mapping[str, float]) -> Response:
-        """Simulate one design and keep its response; parameters by name, SI."""
-        formulation = replace(FORMULATIONS[self.formulation], groove_loss=self.groove_loss)
-        return respond(parameters, formulation, self.scenario, self.settings)
+    def respond(self, parameters: Mapping[str, float], reading: Formulation | None = None) -> Response:
+        """Simulate one design and keep its response.
+
+        Args:
+            parameters: Every parameter by name, SI.
+            reading: Another formulation than `reading`, to see what an option does.
+        """
+        settings = resolving_friction(self.settings) if parameters["coulomb_friction"] > 0.0 else self.settings
+        return respond(parameters, reading or self.reading, self.scenario, settings)

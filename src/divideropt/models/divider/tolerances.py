@@ -1,15 +1,19 @@
 """How exactly the divider is integrated where nobody says otherwise, and how large its states are."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
-from divideropt.models.divider.kernels import STATES
+from divideropt.models.divider.kernels import FRICTION_VELOCITY, STATES
 from divideropt.ode import SolverSettings
 
 DEFAULT_METHOD = "LSODA"
 DEFAULT_RTOL = 1e-4
 DEFAULT_MAX_STEPS = 5_000
 """Twenty times what a design needs at the default tolerance: a chattering one is given up there."""
+
+FRICTION_SHARE = 0.01
+"""Absolute tolerance of ẋ, in shares of ẋ_tan, where there is Coulomb friction."""
 
 STATE_UNITS: Mapping[str, str] = MappingProxyType(
     {name: {"xdot": "m/s", "x": "m"}.get(name, "Pa") for name in STATES}
@@ -21,6 +25,24 @@ _SCALES = {"Pa": 1e6, "m/s": 1e-2, "m": 1e-4}
 
 DEFAULT_SCALES: Mapping[str, float] = MappingProxyType({name: _SCALES[unit] for name, unit in STATE_UNITS.items()})
 """The scale of each state, in its unit: where a campaign gives no atol, atol = rtol × scale."""
+
+
+def resolving_friction(settings: SolverSettings) -> SolverSettings:
+    """Tighten the velocity's tolerance so far that Coulomb friction, Fc tanh(ẋ/ẋ_tan), is seen to hold the spool.
+
+    Without it a spool comes to rest in the wrong place of its band: with 10 N at Chapter 2's equations the
+    prototype's error ends at 0.82 % instead of 0.01 %.
+
+    Args:
+        settings: As given.
+
+    Returns:
+        The same with an absolute tolerance of ẋ of at most `FRICTION_SHARE` of ẋ_tan.
+    """
+    atol = list(settings.atol)
+    place = STATES.index("xdot")
+    atol[place] = min(atol[place], FRICTION_SHARE * FRICTION_VELOCITY)
+    return replace(settings, atol=tuple(atol))
 
 
 def default_atol(rtol: float) -> tuple[float, ...]:

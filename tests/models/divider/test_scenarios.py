@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+
+from divideropt.models.base import Outcome
+from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step
+from divideropt.models.divider.quantities import GEOMETRIC
+from divideropt.models.divider.scenarios import BASE, Scenarios, Worst
+
+OTHER = Scenario(load_pressures=(5e6, 5e6), events=(load_step(2, 9e6),))
+MODELS = {BASE: Divider(), "low": Divider(scenario=OTHER)}
+
+
+def evaluated(model, *parameters):
+    rows, verdicts = model.evaluate(np.array([list(p.values()) for p in parameters]))
+    return [dict(zip(model.quantities, row.tolist(), strict=True)) for row in rows], verdicts
+
+
+def test_every_scenario_has_its_columns(design) -> None:
+    model = Scenarios(MODELS)
+    assert list(model.quantities) == [*QUANTITIES, *(f"low.{q}" for q in QUANTITIES if q not in GEOMETRIC)]
+    (found,), (verdict,) = evaluated(model, design())
+    (base,), _ = evaluated(MODELS[BASE], design())
+    (low,), _ = evaluated(MODELS["low"], design())
+    assert verdict.ok
+    for name in QUANTITIES:
+        assert found[name] == base[name]
+        if name not in GEOMETRIC:
+            assert found[f"low.{name}"] == low[name]
+
+
+def test_the_worst_is_the_largest_and_a_signed_one_keeps_its_sign(design) -> None:
+    wanted = (
+        Worst("steady_state_error", (BASE, "low")),
+        Worst("dynamic_error", ("low", BASE)),
+        Worst("stability_margin", (BASE, "low"), least=True),
+        Worst("settling_time", ("low",)),
+    )
+    model = Scenarios(MODELS, wanted)
+    rows, _ = evaluated(model, design(), design("thesis_prototype"))
+    for q in rows:
+        assert q["worst.steady_state_error"] == max(q["steady_state_error"], q["low.steady_state_error"])
+        both = [q["dynamic_error"], q["low.dynamic_error"]]
+        assert q["worst.dynamic_error"] == max(both, key=abs)
+        assert q["least.stability_margin"] == min(q["stability_margin"], q["low.stability_margin"])
+        assert q["worst.settling_time"] == q["low.settling_time"]
+    assert model.quantities["worst.dynamic_error"].signed
+
+
+def test_a_scenario_that_fails_is_named_and_its_worst_is_not_known(design) -> None:
+    short = Divider(scenario=Scenario(events=(load_step(1, 15e6),), end_time=0.01))
+    model = Scenarios({**MODELS, "short": short}, (Worst("settling_time", (BASE, "short")),))
+    (q,), (verdict,) = evaluated(model, design())
+    assert verdict.outcome is Outcome.UNSETTLED
+    assert verdict.text.startswith("in scenario short: at the end a load flow")
+    assert np.isnan(q["worst.settling_time"])
+    assert np.isfinite(q["settling_time"])
+
+
+def test_the_reference_has_the_same_columns(design) -> None:
+    model = Scenarios(MODELS, (Worst("dynamic_error", (BASE, "low")),))
+    reference = model.reference()
+    assert list(reference.quantities) == list(model.quantities)
+    (fast,), _ = evaluated(model, design())
+    (exact,), _ = evaluated(reference, design())
+    for name in ("worst.dynamic_error", "low.settling_time", "source_pressure"):
+        assert fast[name] == pytest.approx(exact[name], rel=2e-3), name
+        assert fast["settling_time"] != exact["settling_time"]
