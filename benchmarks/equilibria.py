@@ -194,7 +194,8 @@ def returned(cases: list[Case]) -> None:
         end = simulate(case, case.rest.state + away, max(8 / margin, LONG), "Radau", 1e-10)
         gaps.append(float((np.abs(end - case.rest.state) / SIZES).max()))
     print(f"conservative: {len(gaps)} random stable equilibria, started 1e-6 away, Radau over 8/margin, at least "
-          f"{LONG:g} s: largest distance at the end {max(gaps):.1e}; {sum(gap > 1e-8 for gap in gaps)} above 1e-8")  # fmt: skip
+          f"{LONG:g} s: largest distance at the end {max(gaps):.1e}; "
+          f"{sum(gap > 1e-8 for gap in gaps)} above 1e-8")  # fmt: skip
 
 
 def boundary(cases: list[Case]) -> None:

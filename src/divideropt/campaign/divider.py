@@ -1,7 +1,7 @@
 """The `model` section of a campaign for the flow divider: parameters, scenario, solver."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, PlainSerializer, PlainValidator, Wit
 from divideropt.campaign import schemas
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf, Tables, by_name, measure_of
 from divideropt.campaign.scenario import ScenarioConfig
-from divideropt.campaign.sections import Section, collect, show
+from divideropt.campaign.sections import Section, collect, mistake, show, together
 from divideropt.models import Domain
 from divideropt.models.divider.formulations import FORMULATIONS
 from divideropt.models.divider.parameters import PARAMETER_SETS, PARAMETERS, parameter_set
@@ -48,14 +48,19 @@ def _event_count(scenario: object) -> int:
 
 
 def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConfig]:
-    for name in scenarios:
-        if name == BASE:
-            raise ValueError(f"{BASE!r} is the name of the scenario above; give this one another")
-        if not _SCENARIO_NAME.fullmatch(name):
-            raise ValueError(f"{show(name)} cannot name a scenario; use 1 to 32 of a-z, 0-9 and _, a letter first")
-        if name in _RESERVED or name.startswith("event_"):
-            raise ValueError(f"{show(name)} already means something in a column's name; give the scenario another")
+    found = [mistake((name,), sentence, at_key=True) for name in scenarios for sentence in _objections_to(name)]
+    if found:
+        raise together(found)
     return scenarios
+
+
+def _objections_to(name: str) -> Iterator[str]:
+    if name == BASE:
+        yield f"{BASE!r} is the name of the scenario above; give this one another"
+    elif not _SCENARIO_NAME.fullmatch(name):
+        yield f"{show(name)} cannot name a scenario; use 1 to 32 of a-z, 0-9 and _, a letter first"
+    elif name in _RESERVED or name.startswith("event_"):
+        yield f"{show(name)} already means something in a column's name; give the scenario another"
 
 
 class SolverConfig(Section):
