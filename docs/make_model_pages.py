@@ -7,7 +7,7 @@ figures to `docs/images/model/`. Running it twice gives the same bytes.
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from modelpages import closed_form, designs, endflows, grooves, limits, measures, nomenclature, options, starts
+from modelpages import closed_form, designs, endflows, grooves, kwan, limits, measures, nomenclature, options, starts
 from modelpages.blocks import fill
 from modelpages.figures import FIGURES
 
@@ -33,6 +33,7 @@ BLOCKS: Mapping[str, Mapping[str, Callable[[], str]]] = {
         "end-flows": endflows.end_flows_table,
         "limits": lambda: limits.limits_table(128),
         "sizing": designs.sizing_table,
+        "kwan": kwan.kwan_table,
         "drawn": designs.drawn_table,
         "starts": lambda: starts.starts_table("listing"),
         "measures": measures.measures_table,

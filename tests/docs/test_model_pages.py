@@ -12,7 +12,16 @@ from modelpages.figures import FIGURES
 CHEAP = {
     "nomenclature.md": ["parameters", "sets", "quantities"],
     "pilot.md": ["closed-form", "validity", "groove-loss"],
-    "disagreements.md": ["options-base", "listing-mended", "end-flows", "sizing", "drawn", "rotated", "starts"],
+    "disagreements.md": [
+        "options-base",
+        "listing-mended",
+        "end-flows",
+        "sizing",
+        "kwan",
+        "drawn",
+        "rotated",
+        "starts",
+    ],
 }
 
 
