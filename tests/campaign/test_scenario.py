@@ -1,5 +1,9 @@
 """Scenarios in a campaign: events in a row, several scenarios, the worst of them."""
 
+import re
+import textwrap
+from pathlib import Path
+
 import jsonschema
 import pytest
 from ruamel.yaml import YAML
@@ -152,3 +156,20 @@ def test_each_mistake_is_found_at_its_place(text, edit, expected):
     assert [(line, column) for line, column, _ in reported[: len(expected)]] == [e[:2] for e in expected]
     for (_, _, message), (_, _, part) in zip(reported, expected, strict=False):
         assert part in message
+
+
+GUIDE = (Path(__file__).parents[2] / "docs" / "scenarios.md").read_text(encoding="utf-8")
+EXAMPLES = [textwrap.dedent(block) for block in re.findall(r"((?:^    .*\n)+)", GUIDE, re.MULTILINE)]
+REST = "name: guide\nvariables: {spool_radius: [6 mm, 16 mm]}\nstrategies: {nsga2: {population: 8, generations: 2}}\n"
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_the_guide_is_right(example):
+    if example.startswith("scenario:"):
+        example = "model:\n  kind: divider\n" + textwrap.indent(example, "  ") + "objectives: {source_pressure: }\n"
+    problem = build_problem(parse_campaign(REST + example))
+    assert len(problem.objectives) >= 1
+
+
+def test_the_guide_has_its_examples():
+    assert len(EXAMPLES) == 3
