@@ -91,7 +91,12 @@ def _dynamics_unaffected(runs: Runs) -> Judgement:
 
 
 def _less_leakage(runs: Runs) -> Judgement:
-    return rises(runs.sweep("radial_clearance"), "leakage")
+    sweep = runs.sweep("radial_clearance")
+    lost = sweep["leakage"]
+    figures = f"{shown('leakage', lost[0])} → {shown('leakage', lost[-1])}{tail(sweep)}"
+    if lost.min() < 0:
+        return Judgement(Answer.NO, f"{figures}: more flow arrives than is supplied")
+    return Judgement(rises(sweep, "leakage").answer, figures)
 
 
 def _tighter_is_better(runs: Runs) -> Judgement:
@@ -174,7 +179,7 @@ CLEARANCE = Chapter(
         Statement(
             "A tighter clearance allows less leakage",
             "Fig. 3.11",
-            "Qs − QL1 − QL2: its magnitude rises with the clearance.",
+            "Yes if Qs − QL1 − QL2 is a loss at every clearance and rises with it.",
             _less_leakage,
         ),
         Statement(

@@ -48,8 +48,9 @@ def _opening() -> Iterator[str]:
         "Every statement of section 3.4 and every experimental trend of Chapter 4 of the thesis (Wiens 2004), and "
         "whether each formulation of the model shows it. Every number here comes from runs made when the page was "
         "written, but those quoted from the thesis. The criteria are ours, since the thesis gives none. They were "
-        "written down before our runs, though not before we knew the author’s own sweeps (`tests/reference`); two "
-        "things were added after the first runs: what counts as flat, and the case of 3 N."
+        "written down before our runs, though not before we knew the author’s own sweeps (`tests/reference`); four "
+        "things were changed after the first runs: what counts as flat, the case of 3 N, that A20 heeds the sign, and "
+        "that A24 looks at the smallest drop that is ok."
     )
     yield ""
 

@@ -17,7 +17,8 @@ def leakage_note() -> str:
         "A slip makes this finding. In the listing, the leakage `Qlb2` of side 2 has a minus where side 1 has a "
         f"plus, so that fluid appears from nowhere. As it ran, the error goes from {printed[0]:.2f} % at 1 µm to "
         f"{printed[1]:.2f} % at 20 µm; with that one sign mended, and nothing else, from {mended[0]:.2f} % to "
-        f"{mended[1]:.2f} %."
+        f"{mended[1]:.2f} %. The `text` has no leakage to tank at all: the "
+        "printed pilot equations themselves make what its flows have too much."
     )
 
 
