@@ -8,7 +8,6 @@ import math
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +25,7 @@ from divideropt.models.divider.equilibrium import (
     rests_on_stop,
     stability_margin,
 )
-from divideropt.models.divider.kernels import N_STATES, jacobian, rates
+from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.scenario import Inputs
 from divideropt.ode import integrate
@@ -34,6 +33,9 @@ from divideropt.ode import integrate
 COUNT = 10_000
 RETURNING = 200
 NEAR_BOUNDARY = 200
+
+KINK = 1e-6
+"""A spool nearer than this [m] to a port's edge has no difference quotient to compare with."""
 
 AUDITED = 200
 """Designs without an equilibrium whose force is looked at,"""
@@ -59,6 +61,9 @@ SIZES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 0.1, 1e-3, 1e7, 1e7])
 SLOWEST = 0.5
 """A growth or decay slower than this [1/s] is not told from none within the time simulated."""
 
+FASTEST = 10.0
+"""A design that grows or decays faster than this [1/s] is not near the boundary."""
+
 LONG = 1.0
 """How long the designs near the boundary are simulated [s], the standard test's horizon, or"""
 
@@ -70,6 +75,7 @@ FOLDS = 4.0
 class Case:
     """One design under one set of inputs, and its equilibrium."""
 
+    point: NDArray[np.float64]
     design: Design
     rest: Equilibrium | None
 
@@ -85,23 +91,27 @@ def main(count: int) -> None:
     boundary(cases["conservative"])
 
 
-def records(formulation: str, count: int) -> Iterator[Design]:
-    """What the kernel reads for each design."""
+def points(count: int) -> NDArray[np.float64]:
+    """Sobol points: the variables of C.6, φ/φ0, the load pressures, shape (count, 8)."""
     bounds = np.array([*BOX.values(), *INPUTS])
-    points = qmc.Sobol(len(bounds), rng=0).random_base2(math.ceil(math.log2(count)))[:count]
-    for point in qmc.scale(points, bounds[:, 0], bounds[:, 1]).tolist():
-        changes, (position, first, second) = dict(zip(BOX, point[:5], strict=True)), point[5:]
-        valve = Valve.of(parameter_set("thesis_base") | changes, FORMULATIONS[formulation])
-        yield valve.under(Inputs(1e-3, position, (first, second)))
+    unit = qmc.Sobol(len(bounds), rng=0).random_base2(math.ceil(math.log2(count)))[:count]
+    return np.asarray(qmc.scale(unit, bounds[:, 0], bounds[:, 1]))
+
+
+def solved(formulation: str, point: NDArray[np.float64]) -> Case:
+    """Seek the equilibrium of one design from the centred spool."""
+    *variables, position, first, second = point.tolist()
+    changes = dict(zip(BOX, variables, strict=True))
+    valve = Valve.of(parameter_set("thesis_base") | changes, FORMULATIONS[formulation])
+    design = valve.under(Inputs(1e-3, position, (first, second)))
+    guess = initial_guess(design)
+    return Case(point, design, find_equilibrium(design, guess) or rest_on_rigid_stop(design, guess))
 
 
 def equilibria(formulation: str, count: int) -> list[Case]:
-    """Seek the equilibrium of every design from the centred spool."""
+    """Seek the equilibrium of every design."""
     begin = time.perf_counter()
-    cases = []
-    for design in records(formulation, count):
-        guess = initial_guess(design)
-        cases.append(Case(design, find_equilibrium(design, guess) or rest_on_rigid_stop(design, guess)))
+    cases = [solved(formulation, point) for point in points(count)]
     print(f"{formulation}: {count} designs in {time.perf_counter() - begin:.0f} s")
     return cases
 
@@ -147,6 +157,8 @@ def worst_slope(cases: list[Case]) -> float:
         if case.rest is None or rests_on_stop(case.design, case.rest.state):
             continue
         y = case.rest.state
+        if edge_distance(case.design, y) < KINK:
+            continue
         exact = jacobian(0.0, y, case.design) * SIZES
         rows = np.abs(exact).max(axis=1)
         for j, step in enumerate(steps):
@@ -157,6 +169,13 @@ def worst_slope(cases: list[Case]) -> float:
             numerical = (8 * near - far) / (12 * step) * SIZES[j]
             worst = max(worst, float(np.nanmax(np.abs(numerical - exact[:, j]) / rows)))
     return worst
+
+
+def edge_distance(design: Design, y: NDArray[np.float64]) -> float:
+    """How far the spool is from where a port's area, or the stop's force, has no derivative [m]."""
+    d = design[0]
+    edges = [abs(abs(d.port_offset + side * y[STATES.index("x")]) - d.port_radius) for side in (-1, 1)]
+    return float(min(*edges, abs(d.stop_position - abs(y[STATES.index("x")]))))
 
 
 def stable(cases: list[Case], sign: float = 1.0) -> list[tuple[Case, float]]:
@@ -199,18 +218,53 @@ def returned(cases: list[Case]) -> None:
 
 
 def boundary(cases: list[Case]) -> None:
-    """Compare eigenvalues with simulations for the designs nearest to the boundary of stability."""
-    near = sorted((abs(margin), i, case, margin) for sign in (1.0, -1.0)
-                  for i, (case, margin) in enumerate(stable(cases, sign)) if abs(margin) >= SLOWEST)  # fmt: skip
+    """Compare eigenvalues with simulations for designs on either side of the boundary of stability."""
+    rng = np.random.default_rng(1)
+    safe, lost = stable(cases), stable(cases, -1.0)
+    near: list[tuple[Case, float]] = []
+    tried = 0
+    while len(near) < NEAR_BOUNDARY and lost and tried < 20 * NEAR_BOUNDARY:
+        inside, outside = safe[rng.integers(len(safe))][0], lost[rng.integers(len(lost))][0]
+        near += either_side(inside.point, outside.point)
+        tried += 1
     contradictions, errors, unstable = 0, [], 0
-    for _, _, case, margin in near[:NEAR_BOUNDARY]:
+    for case, margin in near[:NEAR_BOUNDARY]:
         rate = measured_rate(case, min(LONG, FOLDS / abs(margin)))
         contradictions += rate * margin > 0  # a positive margin is a decay
-        errors.append(abs(rate + margin))
+        errors.append(abs(rate + margin) / abs(margin))
         unstable += margin < 0
-    print(f"conservative: {len(errors)} designs nearest to the boundary (|margin| {near[0][0]:.2f} to "
-          f"{near[len(errors) - 1][0]:.2f} 1/s, {unstable} unstable), simulated up to {LONG:g} s: {contradictions} "
-          f"contradictions; growth rates differ from the eigenvalues' by at most {max(errors):.1e} 1/s")  # fmt: skip
+    margins = [abs(margin) for _, margin in near[:NEAR_BOUNDARY]]
+    print(f"conservative: {len(errors)} designs near the boundary (on lines between stable and unstable ones; "
+          f"|margin| {min(margins):.2f} to {max(margins):.2f} 1/s, {unstable} unstable), simulated up to {LONG:g} s: "
+          f"{contradictions} contradictions; growth rates differ from the eigenvalues' by at most {max(errors):.1e} "
+          f"of themselves")  # fmt: skip
+
+
+def either_side(inside: NDArray[np.float64], outside: NDArray[np.float64]) -> list[tuple[Case, float]]:
+    """Bisect the line between a stable and an unstable design; return one near the boundary on either side."""
+
+    def at(share: float) -> tuple[Case, float]:
+        case = solved("conservative", inside + share * (outside - inside))
+        free = case.rest is not None and not rests_on_stop(case.design, case.rest.state)
+        return case, stability_margin(case.design, case.rest.state) if free and case.rest else math.nan
+
+    low, high = 0.0, 1.0
+    for _ in range(30):
+        middle = (low + high) / 2
+        margin = at(middle)[1]
+        if math.isnan(margin):
+            return []
+        low, high = (middle, high) if margin > 0 else (low, middle)
+    found = []
+    for place, way in ((low, -1.0), (high, 1.0)):
+        step = 1e-6
+        case, margin = at(place)
+        while abs(margin) < SLOWEST and 0.0 < place + way * step < 1.0:
+            case, margin = at(place + way * step)
+            step *= 2
+        if SLOWEST <= abs(margin) <= FASTEST and margin * way < 0:
+            found.append((case, margin))
+    return found if len(found) == 2 else []
 
 
 def measured_rate(case: Case, until: float) -> float:
