@@ -272,10 +272,8 @@ def _write_data(text: str) -> None:
 def _counted(count: "Tally") -> str:
     """Say how front points came out when they were simulated again."""
     largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
-    return (
-        f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
-        + f"; largest deviation: {largest}" * bool(largest)
-    )
+    words = f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
+    return f"{words}; largest deviation: {largest}" if largest else words
 
 
 def _count(number: int | None) -> str:

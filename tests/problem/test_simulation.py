@@ -1,6 +1,8 @@
 """A model that breaks down on one design costs that design only."""
 
 import numpy as np
+import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from divideropt.models import Outcome
 from divideropt.models.divider import PARAMETERS, Divider, parameter_set
@@ -35,3 +37,32 @@ def test_absurd_dimensions_are_a_row_like_any_other():
     assert not verdicts[0].ok
     assert not verdicts[2].ok
     assert np.isfinite(quantities[1]).all()
+
+
+def test_the_number_of_threads_around_it_changes_no_bit():
+    """Unlimited, two threads of OpenBLAS change the last bits of what SciPy's Radau finds."""
+    found = []
+    for threads in (1, 2):
+        with threadpool_limits(threads, user_api="blas"):
+            quantities, _ = simulate(
+                Divider().reference(), parameter_set("thesis_base"), ["spool_radius"], np.array([[9e-3]])
+            )
+        found.append(quantities.tobytes())
+    assert found[0] == found[1]
+
+
+def test_linear_algebra_runs_on_one_thread_and_is_let_go_afterwards():
+    class Curious(Toy):
+        def evaluate(self, designs):
+            seen.extend(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+            return super().evaluate(designs)
+
+    seen: list[int] = []
+    model = Curious()
+    with threadpool_limits(2, user_api="blas"):
+        simulate(model, dict.fromkeys(model.parameters, 0.5), [], np.empty((1, 0)))
+        after = [library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"]
+    if not seen:
+        pytest.skip("no BLAS here whose threads can be counted")
+    assert set(seen) == {1}
+    assert set(after) == {2}

@@ -1,8 +1,10 @@
 """Designs in, results out, whatever the model does: the one place that calls `Model.evaluate`."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from divideropt.models.base import FloatArray, Model, Outcome, Verdict
 
@@ -20,12 +22,20 @@ def simulate(
 
     Returns:
         The quantities, shape (n, m), and a verdict a design. A design on which the model raises an exception is
-        `crashed`, its quantities NaN; the others are not touched by it.
+        `crashed`, its quantities NaN; the others are not touched by it. The linear algebra runs on one thread: with
+        another number of them its last bits would be others, and a run could not be repeated with other workers.
     """
     places = {name: i for i, name in enumerate(model.parameters)}
     full = np.tile([fixed[name] for name in model.parameters], (len(designs), 1))
     full[:, [places[name] for name in names]] = designs
-    return _guarded(model, full)
+    with _linear_algebra().limit(limits=1, user_api="blas"):
+        return _guarded(model, full)
+
+
+@cache
+def _linear_algebra() -> ThreadpoolController:
+    """Find the libraries that are loaded, once: it takes milliseconds."""
+    return ThreadpoolController()
 
 
 def _guarded(model: Model, full: FloatArray) -> tuple[FloatArray, list[Verdict]]:
