@@ -49,8 +49,8 @@ def _opening() -> Iterator[str]:
         "whether each formulation of the model shows it. Every number here comes from runs made when the page was "
         "written, but those quoted from the thesis. The criteria are ours, since the thesis gives none. They were "
         "written down before our runs, though not before we knew the author’s own sweeps (`tests/reference`); four "
-        "things were changed after the first runs: what counts as flat, the case of 3 N, that A20 heeds the sign, and "
-        "that A24 looks at the smallest drop that is ok."
+        "things were changed after the first runs: what counts as flat, the case of 3 N, that A20 heeds the sign, "
+        "and that A24 looks at the smallest drop that is ok."
     )
     yield ""
 
