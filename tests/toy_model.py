@@ -1,5 +1,9 @@
 """A model that costs nothing: two objectives in conflict, a region where it fails, a signed quantity."""
 
+import os
+import signal
+from pathlib import Path
+
 import numpy as np
 
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
@@ -54,6 +58,22 @@ class ExactToy(Toy):
         quantities[:, 1] *= 1.0 + self.error + self.slip * (x1 > 0.5)
         failing = Verdict(Outcome.UNSETTLED, "x1 is too large")
         return quantities, [failing if x >= self.failing_from else v for x, v in zip(x1, verdicts, strict=True)]
+
+
+class DeadlyReference(CheckedToy):
+    """Its reference kills its process, unless the file is there."""
+
+    def __init__(self, file):
+        super().__init__()
+        self.file = file
+
+    def reference(self):
+        return self if Path(self.file).exists() else Deadly()
+
+
+class Deadly(Toy):
+    def evaluate(self, designs):
+        os.kill(os.getpid(), signal.SIGKILL)
 
 
 class BrokenReference(Toy):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from divideropt.campaign.interrupt import InterruptedRunError
+from divideropt.campaign.interrupt import InterruptedRunError, WorkerLostError
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
@@ -184,6 +184,17 @@ def test_a_signal_keeps_what_was_found_and_the_next_call_goes_on(tmp_path, monke
     verify(folder)
     assert_same(folder, tmp_path / "whole")
     assert kept(folder).design_id.is_unique
+
+
+def test_a_lost_worker_is_said_and_the_next_call_goes_on(tmp_path):
+    options = f"file: {(tmp_path / 'mended').as_posix()}"
+    text = TEXT.replace("CheckedToy", "DeadlyReference")
+    with pytest.raises(WorkerLostError, match=r"worker process was killed(.|\n)*the line that goes on"):
+        run(tmp_path / "store", options, text, backend="loky", workers=2)
+    assert (fronts(tmp_path / "store")["combined"].verified == "no").all()
+    (tmp_path / "mended").touch()
+    count, _ = run(tmp_path / "store", options, text)
+    assert count.agree > 0
 
 
 @pytest.mark.parametrize("left", [0, 1, 2])
