@@ -40,8 +40,9 @@ def objectives() -> None:
     with tempfile.TemporaryDirectory() as folder:
         asked, answered = Path(folder, "designs.csv"), Path(folder, "out.parquet")
         theirs[list(NAMES)].rename(columns=NAMES).to_csv(asked, index=False)
-        command = [sys.executable, "-m", "divideropt", "evaluate", asked, "--campaign", HERE / "listing.yaml"]
-        subprocess.run([*command, "--out", answered], check=True)
+        campaign = str(HERE / "listing.yaml")
+        command = [sys.executable, "-m", "divideropt", "evaluate", str(asked), "--campaign", campaign]
+        subprocess.run([*command, "--out", str(answered)], check=True)
         ours = pd.read_parquet(answered)
     solved = theirs.istate == 2
     print(f"{len(theirs)} designs; the author's solver completed {solved.sum()}, of which we complete "
@@ -68,7 +69,8 @@ def responses() -> None:
         theirs = pd.read_csv(REFERENCE / f"listing_response_{name}.csv")
         scenario = Scenario(settled=False, events=(load_step(1, 15e6, at=step),))
         model = Divider("listing", scenario, solver_settings("LSODA", 1e-10))
-        early, late = (p.trajectory for p in model.respond(parameter_set(parameters)).phases)
+        response = model.respond(parameter_set(parameters))
+        early, late = (p.trajectory for p in response.phases if p.trajectory is not None)
         t = theirs.t.to_numpy()
         states = np.where((t <= step)[:, None], early.at(np.minimum(t, step)), late.at(np.maximum(t, step)))
         his = theirs[STATES].to_numpy()
