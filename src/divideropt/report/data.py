@@ -9,18 +9,16 @@ import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import Verified, combined_front, marked, run_front
-from divideropt.campaign.config import Campaign
-from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import Event
 from divideropt.problem import Problem
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.sampling import spread
+from divideropt.report.setting import setting_of
 from divideropt.store import Store, TableSchema
 
 MOST_DRAWN = 4000
@@ -110,6 +108,11 @@ class ReportData:
         """Those that did not."""
         return tuple(design for design in self.front if design.verified is Verified.DEVIATES)
 
+    @property
+    def beyond_validity(self) -> int:
+        """How many designs of the front are where the model does not vouch for itself."""
+        return sum(design.valid is False for design in self.front)
+
 
 def read_report(store: Store) -> ReportData:
     """Read a store, finished or not.
@@ -141,7 +144,7 @@ def read_report(store: Store) -> ReportData:
     return ReportData(
         campaign.name,
         text,
-        _setting(campaign),
+        setting_of(campaign),
         _variables(problem),
         _objectives(problem, front, reference),
         _constraints(problem),
@@ -231,46 +234,6 @@ def _constraints(problem: Problem) -> tuple[str, ...]:
         limits = " and ".join(f"{word} {axis.bound(bound)}" for word, bound in given.items())
         sentences.append(f"{axis.words} {limits}")
     return tuple(sentences)
-
-
-def _setting(campaign: Campaign) -> tuple[tuple[str, str], ...]:
-    model = campaign.model
-    if not isinstance(model, DividerConfig):
-        return (("Model", model.kind),)
-    scenario, solver = model.scenario.to_scenario(), model.solver
-    loads = " and ".join(f"{pressure / 1e6:g}" for pressure in scenario.load_pressures)
-    start = "from rest" if scenario.settled else "from an empty valve"
-    return (
-        ("Model", "divider: the adjustable-ratio flow divider"),
-        ("Formulation", model.formulation),
-        ("Parameters", _parameter_words(model)),
-        (
-            "Scenario",
-            f"source flow {scenario.source_flow * 6e4:g} L/min, spool position φ/φ0 = {scenario.spool_position:g}, "
-            f"loads {loads} MPa; {start}; {'; '.join(_event_words(event) for event in scenario.events)}; "
-            f"end at {scenario.end_time:g} s",
-        ),
-        ("Solver", f"{solver.method}, relative tolerance {solver.rtol:g}, at most {solver.max_steps} steps"),
-    )
-
-
-def _event_words(event: Event) -> str:
-    changes = [f"load {i} to {p / 1e6:g} MPa" for i, p in enumerate(event.load_pressures, start=1) if p is not None]
-    if event.source_flow is not None:
-        changes.append(f"source flow to {event.source_flow * 6e4:g} L/min")
-    if event.spool_position is not None:
-        changes.append(f"φ/φ0 to {event.spool_position:g}")
-    over = f" over {event.over * 1e3:g} ms" if event.over > 0.0 else ""
-    return f"at {event.at * 1e3:g} ms {', '.join(changes)}{over}"
-
-
-def _parameter_words(model: DividerConfig) -> str:
-    parameters = model.tables().parameters or {}
-    changes = ", ".join(
-        f"{name.replace('_', ' ')} {axis_of(parameters[name], [value]).bound(value)}"
-        for name, value in model.set.items()
-    )
-    return f"{model.parameters}, with {changes}" if changes else model.parameters
 
 
 def _version(name: str) -> str:

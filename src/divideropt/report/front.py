@@ -19,6 +19,10 @@ LEAST_SHARE = 0.05
 """Share of the front from which on it leans on a bound; fewer designs are the front's edge."""
 
 
+VALIDITY = "within_validity"
+"""The quantity by which a model says whether its assumptions hold."""
+
+
 @dataclass(frozen=True)
 class Design:
     """One design.
@@ -33,6 +37,7 @@ class Design:
         met: Whether each objective's goal is met, None where it has none.
         verified: What is known of simulating it again by the model's reference.
         deviation: The largest deviation of an objective there, None where not known.
+        valid: Whether the model vouches for it (`within_validity`), None where it does not say.
     """
 
     design_id: str
@@ -44,6 +49,7 @@ class Design:
     met: tuple[bool | None, ...]
     verified: Verified = Verified.NO
     deviation: float | None = None
+    valid: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -83,6 +89,8 @@ def designs_of(
     order = range(len(objectives)) if attainment is None else np.argsort(attainment, kind="stable").tolist()
     ids, runs = table["design_id"].to_pylist(), table["run"].to_pylist()
     known = _known(table, schema)
+    told = VALIDITY in table.column_names
+    valid = table[VALIDITY].to_pylist() if told else [None] * table.num_rows
     return tuple(
         Design(
             ids[i],
@@ -93,6 +101,7 @@ def designs_of(
             None if attainment is None else float(attainment[i]),
             _met(objectives[i], problem),
             *known[i],
+            valid[i],
         )
         for i in order
     )
