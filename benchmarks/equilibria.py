@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from divideropt.campaign.load import default_campaign
 from divideropt.models.divider import FORMULATIONS, parameter_set, solver_settings
 from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.equilibrium import (
@@ -43,13 +44,7 @@ AUDITED = 200
 PLACES = 301
 """at so many places over the stroke."""
 
-BOX = {
-    "spool_radius": (6e-3, 16e-3),
-    "groove_width": (0.6e-3, 2e-3),
-    "total_pressure_drop": (2e6, 10e6),
-    "fixed_drop_ratio": (0.3, 0.99),
-    "centred_opening": (0.1, 0.9),
-}
+BOX = default_campaign().variables
 """Variables and bounds of C.6, SI."""
 
 INPUTS = ((0.3, 0.7), (1e6, 20e6), (1e6, 20e6))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
+from divideropt.campaign.load import default_campaign
 from divideropt.models.base import FloatArray, Outcome
 from divideropt.models.divider import FORMULATIONS, Scenario, parameter_set, solver_settings
 from divideropt.models.divider.formulations import Formulation, OrificeLaw, PortRange, PressureFloor, Stop
@@ -15,13 +16,7 @@ from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import respond
 from modelpages.tables import fixed, power, table
 
-BOX = {
-    "spool_radius": (6e-3, 16e-3),
-    "groove_width": (0.6e-3, 2e-3),
-    "total_pressure_drop": (2e6, 10e6),
-    "fixed_drop_ratio": (0.3, 0.99),
-    "centred_opening": (0.1, 0.9),
-}
+BOX = default_campaign().variables
 """Bounds of the complex run, C.6."""
 
 CHANGES: Mapping[str, Mapping[str, Any]] = {
