@@ -108,17 +108,20 @@ def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
     return None
 
 
-def force_profile(design: Design, count: int) -> tuple[FloatArray, FloatArray]:
+def force_profile(
+    design: Design, count: int, between: tuple[float, float] | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Hold the spool at places over the stroke, and return them [m] and the force on it [N].
 
     Args:
         design: `COEFFICIENTS`, shape (1,).
         count: Number of places.
+        between: First and last place [m]; as far as an equilibrium is sought, if not given.
 
     Returns:
         Both of shape (count,); the force is NaN where the pressures cannot be solved for.
     """
-    places, _, accelerations = _profile(design, count)
+    places, _, accelerations = _profile(design, count, between)
     return places, accelerations * design[0].mass
 
 
@@ -236,7 +239,7 @@ def _newton(
 
 def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
     """Search the stroke for a sign change of the force, nearest to the start first."""
-    places, held, forces = _profile(design, BRACKETS + 1)
+    places, held, forces = _profile(design, BRACKETS + 1, None)
     crossing = np.flatnonzero(np.sign(forces[:-1]) * np.sign(forces[1:]) <= 0)
     for i in sorted(crossing, key=lambda k: abs(places[k] - start[_X])):
         guess = held[i]
@@ -249,10 +252,12 @@ def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
     return None
 
 
-def _profile(design: Design, count: int) -> tuple[FloatArray, list[FloatArray | None], FloatArray]:
+def _profile(
+    design: Design, count: int, between: tuple[float, float] | None
+) -> tuple[FloatArray, list[FloatArray | None], FloatArray]:
     """Places over the stroke, the states with the spool held there, and the force on it per mass."""
     reach = _reach(design)
-    places = np.linspace(-reach, reach, count)
+    places = np.linspace(*(between or (-reach, reach)), count)
     held = _held_states(design, places)
     return places, held, np.array([np.nan if y is None else rates(0.0, y, design)[_XDOT] for y in held])
 
