@@ -1,13 +1,26 @@
 """The numbers and figures of `docs/model/`, from the model's own runs.
 
-Run it with `python docs/make_model_pages.py`; it takes about a minute. Tables go between the markers of the pages,
+Run it with `python docs/make_model_pages.py`; it takes a minute or two. Tables go between the markers of the pages,
 figures to `docs/images/model/`. Running it twice gives the same bytes.
 """
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from modelpages import closed_form, designs, endflows, grooves, kwan, limits, measures, nomenclature, options, starts
+from modelpages import (
+    closed_form,
+    designs,
+    endflows,
+    grooves,
+    kwan,
+    limits,
+    measures,
+    nomenclature,
+    options,
+    starts,
+    summary,
+    turned,
+)
 from modelpages.blocks import fill
 from modelpages.figures import FIGURES
 
@@ -26,6 +39,7 @@ BLOCKS: Mapping[str, Mapping[str, Callable[[], str]]] = {
         "groove-loss": grooves.groove_loss_table,
     },
     "disagreements.md": {
+        "in-short": summary.in_short,
         "options-base": lambda: options.options_table((*options.WHOLE, *options.FROM_CONSERVATIVE), "base"),
         "options-wide": lambda: options.options_table((*options.WHOLE, *options.FROM_CONSERVATIVE), "wide"),
         "options-prototype": lambda: options.options_table((*options.WHOLE, *options.FROM_CONSERVATIVE), "prototype"),
@@ -38,6 +52,7 @@ BLOCKS: Mapping[str, Mapping[str, Callable[[], str]]] = {
         "starts": lambda: starts.starts_table("listing"),
         "measures": measures.measures_table,
         "rotated": measures.rotated_table,
+        "turned": turned.turned_table,
         "cancelling": lambda: measures.cancelling_table(256),
     },
 }

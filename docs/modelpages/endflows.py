@@ -1,4 +1,4 @@
-"""The factor 6 that (2.34)-(2.37) lost under the root, against (A.29), (A.30)."""
+"""The factor 6 that (2.34)-(2.37) lost under the root, and the minus that (2.37) lost, against the appendix."""
 
 import math
 from collections.abc import Mapping
@@ -15,13 +15,21 @@ from modelpages.tables import fixed, power, table
 LOST = math.sqrt(6)
 """By which the printed end flows are too large."""
 
+AS_PRINTED = (
+    (1.0, 1.0, "as (A.29), (A.30), (A.46)"),
+    (LOST, 1.0, "factor of (2.34)–(2.37)"),
+    (1.0, -1.0, "sign of (2.37)"),
+    (LOST, -1.0, "both"),
+)
+"""Factor of all end flows, sign of Qc2i, and what they are called."""
+
 
 def end_flows_table() -> str:
     """Tabulate the equilibrium after the step, `text`, with the end flows as derived and as printed."""
     rows = []
     for name, label in (("base", "`thesis_base`"), ("prototype", "`thesis_prototype`")):
-        for factor, words in ((1.0, "as (A.29), (A.30)"), (LOST, "as (2.34)–(2.37)")):
-            rows.append([f"{label}, {words}", *_equilibrium(PARAMETERS[name], factor)])
+        for factor, sign, words in AS_PRINTED:
+            rows.append([f"{label}, {words}", *_equilibrium(PARAMETERS[name], factor, sign)])
     header = [
         "",
         "steady-state error [%]",
@@ -32,18 +40,27 @@ def end_flows_table() -> str:
     return table(header, rows, numbers_from=1)
 
 
-def with_end_flows(parameters: Mapping[str, float], factor: float) -> Design:
-    """Return the record of `text` after the step, with the grooves' end flows multiplied by a factor."""
+def with_end_flows(parameters: Mapping[str, float], factor: float, sign: float) -> Design:
+    """Return the record of `text` after the step, with the grooves' end flows changed.
+
+    Args:
+        parameters: Every parameter by name, SI.
+        factor: What all of them are multiplied by.
+        sign: What Qc2i is multiplied by besides, 1 or -1.
+    """
     reading, inputs = FORMULATIONS["text"], Scenario().spans()[-1].inputs
     design = Valve.of(parameters, reading).under(inputs)
     sides = pilot_sides(parameters, inputs.spool_position, reading)
-    first, second = (replace(s, inlet=factor * s.inlet, outlet=factor * s.outlet).net() for s in sides)
+    first, second = (
+        replace(s, inlet=factor * of_inlet * s.inlet, outlet=factor * s.outlet).net()
+        for s, of_inlet in zip(sides, (1.0, sign), strict=True)
+    )
     design[0].pilot_1, design[0].pilot_2 = first, second
     return design
 
 
-def _equilibrium(parameters: Mapping[str, float], factor: float) -> list[str]:
-    design = with_end_flows(parameters, factor)
+def _equilibrium(parameters: Mapping[str, float], factor: float, sign: float) -> list[str]:
+    design = with_end_flows(parameters, factor, sign)
     rest = find_equilibrium(design, initial_guess(design))
     if rest is None:
         return ["no equilibrium", "–", "–", "–"]

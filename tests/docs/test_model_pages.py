@@ -8,11 +8,15 @@ from make_model_pages import BLOCKS, PAGES, PICTURES
 from modelpages.blocks import block, fill
 from modelpages.figures import FIGURES
 
+ELSEWHERE = {"sound"}
+"""Figures that `docs/make_sound_page.py` draws, for `sound.md`."""
+
 # What is checked against a fresh run; the rest takes up to half a minute a block and comes from the same command.
 CHEAP = {
     "nomenclature.md": ["parameters", "sets", "quantities"],
     "pilot.md": ["closed-form", "validity", "groove-loss"],
     "disagreements.md": [
+        "in-short",
         "options-base",
         "listing-mended",
         "end-flows",
@@ -20,6 +24,7 @@ CHEAP = {
         "kwan",
         "drawn",
         "rotated",
+        "turned",
         "starts",
     ],
 }
@@ -44,9 +49,10 @@ def test_a_figure_that_costs_nothing_is_what_the_command_draws_now() -> None:
 
 
 def test_every_figure_is_there_drawn_and_shown() -> None:
-    assert {path.stem for path in PICTURES.glob("*.svg")} == set(FIGURES)
+    drawn = {path.stem for path in PICTURES.glob("*.svg")}
+    assert set(FIGURES) <= drawn <= set(FIGURES) | ELSEWHERE
     shown = "".join(path.read_text(encoding="utf-8") for path in PAGES.glob("*.md"))
-    for name in FIGURES:
+    for name in drawn:
         root = ElementTree.parse(PICTURES / f"{name}.svg").getroot()
         assert root.tag.endswith("svg")
         assert f"images/model/{name}.svg" in shown

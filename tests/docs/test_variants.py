@@ -50,9 +50,17 @@ def test_the_lost_factor_is_that_between_2_34_and_a_29() -> None:
 
 def test_end_flows_that_are_not_changed_leave_the_text_as_it_is() -> None:
     found = run(BASE, FORMULATIONS["text"])
-    changed = with_end_flows(BASE, 1.0)[0]
+    changed = with_end_flows(BASE, 1.0, 1.0)[0]
     for name in ("pilot_1", "pilot_2"):
         assert changed[name] == pytest.approx(found.response.phases[-1].design[0][name], rel=1e-12, abs=0)
+
+
+def test_the_lost_minus_turns_what_the_grooves_of_side_2_take_from_the_supply() -> None:
+    # (2.37) against (A.46): the first row is what both grooves add to the supply, -2 Qc2i.
+    right, printed = (with_end_flows(BASE, 1.0, sign)[0] for sign in (1.0, -1.0))
+    assert printed["pilot_2"][0] == pytest.approx(-right["pilot_2"][0], rel=1e-12)
+    assert np.array_equal(printed["pilot_2"][1:], right["pilot_2"][1:])
+    assert np.array_equal(printed["pilot_1"], right["pilot_1"])
 
 
 @pytest.mark.parametrize("position", [0.3, 0.5, 0.7])
