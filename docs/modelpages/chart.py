@@ -42,6 +42,21 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Note:
+    """Words in a panel.
+
+    Attributes:
+        words: What is said.
+        x: Where they begin, as a value of the axis.
+        y: On which height, likewise.
+    """
+
+    words: str
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
 class Panel:
     """One pair of axes.
 
@@ -54,6 +69,7 @@ class Panel:
         y_range: The same upwards.
         log_y: Whether the ordinate is logarithmic.
         shade: A range of x that is marked.
+        notes: Words beside the curves.
     """
 
     lines: Sequence[Line]
@@ -64,6 +80,7 @@ class Panel:
     y_range: tuple[float, float] | None = None
     log_y: bool = False
     shade: tuple[float, float] | None = None
+    notes: Sequence[Note] = ()
 
 
 def draw(panels: Sequence[Panel], description: str) -> str:
@@ -114,6 +131,7 @@ def _panel(panel: Panel, left: float, width: float, number: int) -> list[str]:
         parts.append(_rule(x.start, at, x.end, at))
         parts.append(_text(x.start - 7, at + 4.5, words, "end"))
     parts += [f'<g clip-path="url(#panel{number})">', *(_curve(line, x, y) for line in panel.lines), "</g>"]
+    parts += [_text(x(note.x), y(note.y), note.words, "start") for note in panel.notes]
     parts.append(f'<rect class="frame" {box} fill="none" stroke="#5b6675"/>')
     parts.append(_text(middle, _HEIGHT - 12, panel.x_label, "middle"))
     turned = f' transform="rotate(-90 {left + 16:.1f} {centre:.1f})"'

@@ -6,7 +6,7 @@ from divideropt.models.divider import FORMULATIONS, parameter_set
 from divideropt.models.divider.formulations import Pilot
 from divideropt.models.divider.ideal import flow_fraction, flow_ratio
 from divideropt.models.divider.pilot import Groove
-from modelpages.chart import Line, Panel, draw
+from modelpages.chart import Line, Note, Panel, draw
 from modelpages.profile import groove_pressure
 from modelpages.runs import Run, run
 from modelpages.sweeps import clearance_sweep, rotation_sweep
@@ -103,9 +103,10 @@ def step_response() -> str:
         both = phase.load_flows(states, times) * 1e3
         flows += [_line(name, times * 1e3, both[:, branch]) for branch in (0, 1)]
         spools.append(_line(name, times * 1e3, states[:, 6] * 1e3))
+    names = (Note("QL1 rises", 14.0, 0.421), Note("QL2 falls", 10.0, 0.505))
     return draw(
         [
-            Panel(flows, "time after the step [ms]", "load flow [L/s]", "load flows", (0.0, 160.0)),
+            Panel(flows, "time after the step [ms]", "load flow [L/s]", "load flows", (0.0, 160.0), notes=names),
             Panel(spools, "time after the step [ms]", "spool position [mm]", "spool", (0.0, 160.0)),
         ],
         "Load flows and spool position after the standard step, 10 to 15 MPa at load 1, in three formulations",

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from modelpages.axis import Axis
-from modelpages.chart import Line, Panel, draw
+from modelpages.chart import Line, Note, Panel, draw
 from modelpages.tables import fixed, power, table
 
 
@@ -34,12 +34,12 @@ def test_logarithmic_ticks_are_the_powers_of_ten() -> None:
 
 def test_a_chart_is_sound_xml_that_says_what_it_shows_and_is_the_same_twice() -> None:
     line = Line("a < b", np.array([0.0, 1.0, 2.0]), np.array([0.0, np.nan, 4.0]), 1, "dash")
-    panels = [Panel([line], "time [s]", "flow", "title", shade=(0.5, 1.0))]
+    panels = [Panel([line], "time [s]", "flow", "title", shade=(0.5, 1.0), notes=(Note("here", 1.0, 2.0),))]
     text = draw(panels, "what & why")
     assert text == draw(panels, "what & why")
     root = ElementTree.fromstring(text)
     words = ["".join(node.itertext()) for node in root.iter("{http://www.w3.org/2000/svg}text")]
-    assert {"a < b", "time [s]", "flow", "title"} <= set(words)
+    assert {"a < b", "time [s]", "flow", "title", "here"} <= set(words)
     assert root.find("{http://www.w3.org/2000/svg}title").text == "what & why"
     # NaN lifts the pen: two strokes begin, and no line is drawn to nowhere.
     path = re.search(r'<path d="([^"]*)" fill="none" class="s1"', text.split("clip-path=")[1])[1]
