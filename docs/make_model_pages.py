@@ -22,7 +22,7 @@ from modelpages import (
     turned,
 )
 from modelpages.blocks import fill
-from modelpages.figures import FIGURES
+from modelpages.figures import FIGURES, figure_2_6_caption
 
 PAGES = Path(__file__).parent / "model"
 PICTURES = Path(__file__).parent / "images" / "model"
@@ -53,6 +53,7 @@ BLOCKS: Mapping[str, Mapping[str, Callable[[], str]]] = {
         "measures": measures.measures_table,
         "rotated": measures.rotated_table,
         "turned": turned.turned_table,
+        "figure-2-6": figure_2_6_caption,
         "cancelling": lambda: measures.cancelling_table(256),
     },
 }

@@ -25,6 +25,7 @@ CHEAP = {
         "drawn",
         "rotated",
         "turned",
+        "figure-2-6",
         "starts",
     ],
 }
