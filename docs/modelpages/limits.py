@@ -76,8 +76,8 @@ def _beyond_the_range(found: Mapping[str, Results]) -> str:
     as_coded = Counter(coded[i] for i in working)
     return (
         f"With the printed areas {len(leaving)} of the {len(printed)} designs cannot be simulated: their spool "
-        f"leaves a port's range. Of these {len(working)} are `ok` once each port has its own range;\nwith the code's ranges "
-        f"they are {', '.join(f'`{outcome}` ({count})' for outcome, count in as_coded.most_common())}."
+        f"leaves a port's range. Of these {len(working)} are `ok` once each port has its own range;\nwith the code's "
+        f"ranges they are {', '.join(f'`{outcome}` ({count})' for outcome, count in as_coded.most_common())}."
     )
 
 
