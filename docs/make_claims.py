@@ -1,20 +1,21 @@
-"""The page `docs/model/claims.md`: every statement of the thesis that a run can show or deny, judged by runs.
+"""The pages `docs/model/claims.md`, every statement of the thesis that a run can show or deny, and `claims_cases.md`.
 
-Run it with `python docs/make_claims.py`; it takes some three minutes on one core.
+Run it with `python docs/make_claims.py`; it takes some four minutes on one core.
 """
 
 from pathlib import Path
 
-from claims.page import write_page
+from claims.page import write_pages
 
-PAGE = Path(__file__).parent / "model" / "claims.md"
+PAGES = Path(__file__).parent / "model"
 
 
 def main() -> None:
-    """Write the page."""
-    PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_text(write_page(), encoding="utf-8")
-    print(PAGE)
+    """Write the pages."""
+    PAGES.mkdir(exist_ok=True)
+    for name, text in write_pages().items():
+        (PAGES / name).write_text(text, encoding="utf-8")
+        print(PAGES / name)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""The author's words as criteria: strong, little, falls, about, zero. The numbers were chosen before the runs."""
+"""The author's words as criteria: strong, little, falls, about, zero.
+
+The numbers were chosen before the runs, but `FLAT`.
+"""
 
 from collections.abc import Mapping
 

@@ -1,11 +1,18 @@
-"""The tests of Chapter 4 in the model, with what it does not say assumed openly, one assumption changed at a time."""
+"""The tests of Chapter 4 in the model, with what it does not say assumed openly, one assumption changed at a time.
 
+Drops and load differences are set as by procedure E.3: with the pilot line shut, so that half of Qs passes each fixed
+orifice. Opened, the line takes flow past the orifices, so that what comes out differs from what is stated.
+"""
+
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from claims.runs import simulate
+from claims.runs import SETTINGS
 from divideropt.models.base import Outcome
-from divideropt.models.divider import Scenario, load_step, parameter_set, rig
+from divideropt.models.divider import FORMULATIONS, QUANTITIES, Scenario, load_step, parameter_set, rig
+from divideropt.models.divider.metrics import measure as quantities_of
+from divideropt.models.divider.response import Response, respond
 
 SECONDS = 3.0
 """How long a response runs after the step [s]: many times what any of them needs."""
@@ -70,6 +77,9 @@ class Point:
         ratio: QL1/QL2 after the step.
         regulation: Change of QL1/(QL1 + QL2) over the step [%].
         loss: Pressure loss [Pa].
+        drop: Over the fixed orifices before the step, mean of both, pilot line open [Pa].
+        load_difference: After the step, at its end, the greater less the lesser [Pa].
+        pilot_share: Of the source flow through the grooves.
         outcome: How it ended.
     """
 
@@ -79,6 +89,9 @@ class Point:
     ratio: float
     regulation: float
     loss: float
+    drop: float
+    load_difference: float
+    pilot_share: float
     outcome: Outcome
 
 
@@ -93,25 +106,41 @@ def measure(
     Args:
         formulation: A name of `FORMULATIONS`.
         assumed: What the thesis does not say.
-        rows: Drop over the fixed orifices at half the source flow, and load difference [Pa].
+        rows: Stated drop over the fixed orifices, and stated load difference, both at half the source flow [Pa].
         spool_position: φ/φ0.
     """
     points = []
     for fixed_drop, load_difference in rows:
         scenario = _scenario(assumed, load_difference, spool_position)
-        ((row, outcome),) = simulate(formulation, scenario, [prototype(assumed, fixed_drop)])
+        design = prototype(assumed, fixed_drop)
+        response = respond(design, FORMULATIONS[formulation], scenario, SETTINGS)
+        found, verdict = quantities_of(response)
+        row = dict(zip(QUANTITIES, found.tolist(), strict=True))
+        drop, difference = _came_out(response)
         points.append(
             Point(
-                row["flow_difference"],
-                row["dynamic_error"],
-                row["settling_time"],
-                row["load_flow_1"] / row["load_flow_2"],
-                row["load_regulation"],
-                row["pressure_loss"],
-                outcome,
+                error=row["flow_difference"],
+                dynamic=row["dynamic_error"],
+                settling=row["settling_time"],
+                ratio=row["load_flow_1"] / row["load_flow_2"],
+                regulation=row["load_regulation"],
+                loss=row["pressure_loss"],
+                drop=drop,
+                load_difference=difference,
+                pilot_share=row["pilot_share"],
+                outcome=verdict.outcome,
             )
         )
     return points
+
+
+def _came_out(response: Response) -> tuple[float, float]:
+    """Return the drop over the fixed orifices before the step and the load difference after it [Pa]."""
+    before, after = response.phases[0].end, response.phases[-1].end
+    if before is None or after is None:
+        return math.nan, math.nan
+    ps, pa = before[0], before[1:3]
+    return float(ps - pa.mean()), float(abs(after[7] - after[8]))
 
 
 def prototype(assumed: Assumptions, fixed_drop: float) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """What is said of a statement, and what a statement is."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -14,10 +14,6 @@ class Answer(StrEnum):
     IN_PART = "in part"
     NO = "no"
     NOT_JUDGED = "not judged"
-
-
-Answers = dict[str, list[Answer]]
-"""The answers given so far, by variant or formulation."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +42,14 @@ class Statement:
         place: Figure, table or section.
         criterion: When the answer is yes, when in part; why there is none, where nothing judges it.
         judge: Gives the answer of one variant; None where the model cannot.
+        counted: Whether it is a statement; else something beside one, without a number, that a run can check.
     """
 
     quotation: str
     place: str
     criterion: str
     judge: Callable[[Runs], Judgement] | None = None
+    counted: bool = True
 
     def judged(self, runs: Runs) -> Judgement:
         """Judge it by the runs of one variant."""
@@ -73,6 +71,29 @@ class Chapter:
     sweep: str
     statements: tuple[Statement, ...]
     note: Callable[[], str] | None = None
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A counted statement with what was found.
+
+    Attributes:
+        label: Its number in the page, as A7.
+        quotation: As in the statement.
+        found: The judgement of every variant or formulation, by name.
+    """
+
+    label: str
+    quotation: str
+    found: Mapping[str, Judgement]
+
+
+def named(judged: Sequence[Judged], beginning: str) -> Judged:
+    """Return the one whose quotation begins so; LookupError if it is not one."""
+    fitting = [one for one in judged if one.quotation.startswith(beginning)]
+    if len(fitting) != 1:
+        raise LookupError(f"{len(fitting)} statements begin with “{beginning}”, not one: quote more, or what is said")
+    return fitting[0]
 
 
 def all_of(parts: Sequence[Judgement]) -> Judgement:

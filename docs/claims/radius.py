@@ -179,8 +179,6 @@ CHAPTER = Chapter(
             "Yes if the stability margin at 3 mm is negative.",
             _unstable,
         ),
-        # What the scan keeps of Figure 3.5 is its caption.
-        Statement("Effect of radius on the settling time", "Fig. 3.5", "Not judged: the text says nothing of it."),
     ),
     note=_start_note,
 )

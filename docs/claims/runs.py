@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray, Outcome
 from divideropt.models.divider import (
+    FORMULATIONS,
     PARAMETERS,
     QUANTITIES,
     Divider,
@@ -19,6 +20,7 @@ from divideropt.models.divider import (
     parameter_set,
     solver_settings,
 )
+from divideropt.models.divider.response import Response, respond
 
 POINTS = 100
 """Points of a sweep, `nparam` of changeall.m."""
@@ -28,6 +30,9 @@ AUTHOR_STEP_TIME = 0.6
 
 RTOL = 1e-6
 """Tolerance of the integration (LSODA): a hundredth of the default, so that no verdict hangs on it."""
+
+SETTINGS = solver_settings("LSODA", RTOL)
+"""Those of every run."""
 
 RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -125,17 +130,25 @@ class Runs:
         self, changes: Sequence[dict[str, float]], accumulation_time: float = 0.2
     ) -> list[tuple[Mapping[str, float], Outcome]]:
         """Run the base set with each of some changes; return quantities by name and the outcome of each."""
+        designs = [parameter_set("thesis_base") | change for change in changes]
+        return simulate(self.variant.formulation, self._test(accumulation_time), designs)
+
+    def response(self, change: Mapping[str, float]) -> Response:
+        """Return the response of the base set with a change, for what no quantity says."""
+        design = parameter_set("thesis_base") | dict(change)
+        return respond(design, FORMULATIONS[self.variant.formulation], self._test(0.2), SETTINGS)
+
+    def _test(self, accumulation_time: float) -> Scenario:
         settled = self.variant.settled
         step = load_step(1, 15e6, at=0.0 if settled else AUTHOR_STEP_TIME)
-        scenario = Scenario(events=(step,), settled=settled, accumulation_time=accumulation_time)
-        return simulate(self.variant.formulation, scenario, [parameter_set("thesis_base") | c for c in changes])
+        return Scenario(events=(step,), settled=settled, accumulation_time=accumulation_time)
 
 
 def simulate(
     formulation: str, scenario: Scenario, designs: Sequence[Mapping[str, float]]
 ) -> list[tuple[Mapping[str, float], Outcome]]:
     """Simulate designs, every parameter given by name, SI; return quantities by name and the outcome of each."""
-    model = Divider(formulation, scenario, solver_settings("LSODA", RTOL))
+    model = Divider(formulation, scenario, SETTINGS)
     rows, verdicts = model.evaluate(np.array([[design[name] for name in PARAMETERS] for design in designs]))
     named = [dict(zip(QUANTITIES, row.tolist(), strict=True)) for row in rows]
     return [(row, verdict.outcome) for row, verdict in zip(named, verdicts, strict=True)]

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from claims.author import Nearness
 from claims.drops import RATIO, TOTAL
 from claims.grooves import CLEARANCE, WIDTH
-from claims.judgement import Answers, Chapter
+from claims.judgement import Chapter, Judged, Statement
 from claims.opening import OPENING, RIM
 from claims.radius import CHAPTER as RADIUS
 from claims.runs import RTOL, Runs
@@ -28,13 +28,12 @@ CHAPTERS: tuple[Chapter, ...] = (
 """Section 3.4, in its order."""
 
 
-def sensitivity_section(runs: Mapping[str, Runs], answers: Answers, moved: list[str]) -> Iterator[str]:
-    """Return the lines of the section; note every answer by variant, and the statements that the start decides.
+def sensitivity_section(runs: Mapping[str, Runs], judged: list[Judged]) -> Iterator[str]:
+    """Return the lines of the section, and note what was found of each statement.
 
     Args:
         runs: Of each variant, by name.
-        answers: By variant; gets one answer a statement.
-        moved: Gets the listing's statements whose answer the cold start changes.
+        judged: Gets every statement that counts.
     """
     yield "## A. Section 3.4: the sensitivity study"
     yield ""
@@ -43,30 +42,35 @@ def sensitivity_section(runs: Mapping[str, Runs], answers: Answers, moved: list[
         f"points are those of `changeall.m` (C.2). Solver: LSODA at a relative tolerance of {RTOL:g}."
     )
     yield ""
-    number = 0
     for chapter in CHAPTERS:
         yield f"### {chapter.title}"
         yield ""
         yield f"{chapter.sweep}."
         yield ""
         for statement in chapter.statements:
-            number += 1
-            yield f"**A{number}.** “{statement.quotation}” ({statement.place})  "
-            yield f"*{statement.criterion}*"
-            yield ""
-            judged = {name: statement.judged(run) for name, run in runs.items()}
-            for name, judgement in judged.items():
-                answers[name].append(judgement.answer)
-            if judged["listing"].answer is not judged["listing, cold"].answer:
-                moved.append(f"A{number} ({judged['listing'].answer}, cold: {judged['listing, cold'].answer})")
-            if statement.judge is not None:
-                yield from table(["", "answer"], [[name, str(j)] for name, j in judged.items()])
-                yield ""
+            yield from _statement(statement, runs, judged)
         if chapter is REMAINING:
             yield from _remaining_table(runs)
         if chapter.note is not None:
             yield chapter.note()
             yield ""
+
+
+def _statement(statement: Statement, runs: Mapping[str, Runs], judged: list[Judged]) -> Iterator[str]:
+    found = {name: statement.judged(run) for name, run in runs.items()}
+    if statement.counted:
+        label = f"A{len(judged) + 1}"
+        judged.append(Judged(label, statement.quotation, found))
+        yield f"**{label}.** “{statement.quotation}” ({statement.place})  "
+        cells = [[name, str(judgement)] for name, judgement in found.items()]
+    else:
+        yield f"Beside it: {statement.quotation} ({statement.place})  "
+        cells = [[name, f"{judgement.answer}: {judgement.figures}"] for name, judgement in found.items()]
+    yield f"*{statement.criterion}*"
+    yield ""
+    if statement.judge is not None:
+        yield from table(["", "answer"], cells)
+        yield ""
 
 
 def _remaining_table(runs: Mapping[str, Runs]) -> Iterator[str]:

@@ -6,18 +6,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from claims import author, criteria, grooves, pilot_line, radius, resolution, trends
+from claims import author, criteria, drops, grooves, pilot_line, radius, resolution, slip, trends
 from claims.experiment import ASSUMED, prototype
-from claims.judgement import Answer, Judgement, all_of
-from claims.page import write_page
+from claims.findings import MAIN
+from claims.judgement import Answer, Judged, Judgement, all_of, named
+from claims.page import CASES, CLAIMS, write_pages
 from claims.runs import VARIANTS, Runs, Sweep
 
 from divideropt.models.divider import FORMULATIONS, parameter_set, rig
 from divideropt.models.divider.geometry import derive_geometry
 from divideropt.models.divider.ideal import flow_ratio
 
-PAGE = (Path(__file__).parents[2] / "docs" / "model" / "claims.md").read_text(encoding="utf-8")
-SECTION_A, SECTION_B = PAGE.split("## A. ")[1].split("## B. ")
+PAGES = Path(__file__).parents[2] / "docs" / "model"
+PAGE, CASES_PAGE = ((PAGES / name).read_text(encoding="utf-8") for name in (CLAIMS, CASES))
+PARTS = re.split(r"^\*\*([ABK]\d+)\.\*\* ", PAGE, flags=re.MULTILINE)
+STATEMENTS = dict(zip(PARTS[1::2], PARTS[2::2], strict=True))
 NAMES = [str(variant) for variant in VARIANTS]
 
 
@@ -28,7 +31,8 @@ def runs():
 
 def block(quotation):
     """What the page has from a statement to the next one."""
-    return PAGE.split(f"“{quotation}”")[1].split("“")[0]
+    (found,) = (part for part in STATEMENTS.values() if part.startswith(f"“{quotation}”"))
+    return found
 
 
 def curve(values, ok=None):
@@ -38,14 +42,31 @@ def curve(values, ok=None):
     return Sweep(np.linspace(0, 1, len(found)), {"steady_state_error": found}, alright, "")
 
 
-@pytest.mark.parametrize(("section", "names"), [(SECTION_A, NAMES), (SECTION_B, list(FORMULATIONS))])
-def test_its_counts_are_those_of_its_answers(section, names):
-    statements = len(re.findall(r"^\*\*[AB]\d+\.\*\*", section, re.MULTILINE))
+@pytest.mark.parametrize(("letter", "names"), [("A", NAMES), ("B", list(FORMULATIONS)), ("K", list(FORMULATIONS))])
+def test_its_counts_are_those_of_its_answers(letter, names):
+    parts = [part for label, part in STATEMENTS.items() if label[0] == letter]
     for name in names:
-        answers = Counter(re.findall(rf"^\| {name} \| \*\*([a-z ]+)\*\*", section, re.MULTILINE))
-        silent = statements - sum(answers.values())  # no table: not judged
-        counts = [answers["yes"], answers["in part"], answers["no"], answers["not judged"] + silent, statements]
+        found = [re.search(rf"^\| {name} \| \*\*([a-z ]+)\*\*", part, re.MULTILINE) for part in parts]
+        answers = Counter(match[1] if match else "not judged" for match in found)  # no table: not judged
+        counts = [*(answers[answer] for answer in Answer), len(parts)]
         assert f"| {name} | {' | '.join(map(str, counts))} |" in PAGE
+
+
+def test_its_numbers_run_on():
+    for letter in "ABK":
+        labels = [label for label in STATEMENTS if label[0] == letter]
+        assert labels == [f"{letter}{number + 1}" for number in range(len(labels))]
+
+
+def test_its_main_findings_are_its_answers():
+    for _, beginnings in MAIN:
+        for beginning in beginnings:
+            (label,) = (label for label, part in STATEMENTS.items() if part.startswith(f"“{beginning}"))
+            table = [
+                re.search(rf"^\| {name} \| \*\*([a-z ]+)\*\*", STATEMENTS[label], re.MULTILINE)
+                for name in FORMULATIONS
+            ]
+            assert f"{label} **{'/'.join(match[1] for match in table)}** (" in PAGE
 
 
 @pytest.mark.parametrize("name", ["conservative", "listing"])
@@ -66,12 +87,43 @@ def test_its_experiment_is_what_runs_say_now():
         drops = trends.assumed(name).drops
         errors = ", ".join(f"{point.error:.2f}" for point in drops)
         volumes = ", ".join(f"{1e6 * point.dynamic:.2f}" for point in drops)
-        assert f"| as assumed | {errors} | {volumes} |" in PAGE.split(f"`{name}`:")[1]
+        assert f"| as assumed | {errors} | {volumes} |" in CASES_PAGE.split(f"## `{name}`")[1]
+
+
+def test_its_rig_comes_out_as_runs_say_now():
+    tests = [trends.assumed(name) for name in FORMULATIONS]
+    for i, row in enumerate(rig.TABLE_4_1):
+        differences = ", ".join(f"{1e-3 * found.drops[i].load_difference:.0f}" for found in tests)
+        drop = tests[0].drops[i].drop
+        lower = 100 * (1 - drop / row.fixed_drop)
+        assert f"| 4.1 | {1e-3 * row.fixed_drop:.0f} kPa | {1e-3 * drop:.0f} kPa | {lower:.0f} % |" in PAGE
+        assert f"| 1630 kPa | {differences} kPa |" in PAGE
+
+
+def test_its_powers_are_of_the_drops_that_come_out():
+    for name in FORMULATIONS:
+        exponent = trends.realised_exponent(trends.assumed(name))
+        assert f"; the power {exponent:.2f} as assumed" in STATEMENTS["K1"].split(f"| {name} |")[1].split("\n")[0]
+        assert (
+            -1.1 < exponent < 2 * trends.drop_exponent([1.23, 0.73], [154e3, 1459e3])
+        )  # the order, not the strength
+
+
+def test_its_slip_is_what_runs_say_now():
+    assert slip.leakage_note() in PAGE
+
+
+@pytest.mark.parametrize("name", ["conservative", "listing"])
+def test_its_overshoot_is_what_runs_say_now(runs, name):
+    beyond = [f"{1e2 * flow:.1f} %" for flow in drops._beyond(runs[name], drops.USUAL_DROP)]
+    assert f"at 3 MPa QL1 by {beyond[0]}, QL2 by {beyond[1]}" in block(
+        "if the pressure drop is too small, the flows overshoot"
+    )
 
 
 @pytest.mark.slow
-def test_it_is_what_its_command_writes():
-    assert write_page() == PAGE
+def test_they_are_what_their_command_writes():
+    assert write_pages() == {CLAIMS: PAGE, CASES: CASES_PAGE}
 
 
 def test_our_listing_repeats_the_authors_sweeps(runs):
@@ -119,6 +171,13 @@ def test_a_sweep_of_failures_is_not_judged():
 
 def test_crossings():
     assert criteria.crossings(np.array([0.0, 1.0, 2.0]), np.array([-1.0, 1.0, -3.0])) == [0.5, 1.25]
+
+
+def test_a_statement_is_found_by_its_beginning():
+    one, other = Judged("A1", "the flows overshoot", {}), Judged("A2", "the flows", {})
+    assert named([one, other], "the flows o") is one
+    with pytest.raises(LookupError, match="2 statements begin"):
+        named([one, other], "the flows")
 
 
 def test_parts_join():
