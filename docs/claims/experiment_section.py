@@ -126,7 +126,7 @@ def _realised() -> Iterator[str]:
     )
     yield (
         "Drop before the step, mean of both orifices, and flow through the grooves are those of `conservative`; the "
-        f"drops of the others are within {100 * apart:.2f} % of them."
+        f"drops of the others are within {100 * apart:.1g} % of them."
     )
     yield ""
 
@@ -215,8 +215,8 @@ def _rotation() -> Iterator[str]:
     yield "### Rotation"
     yield ""
     yield (
-        "QL1/QL2 after the step at Figure 4.8’s mean drop (553 kPa) and load difference (1649 kPa), as assumed, "
-        "beside (2.6); and the change of QL1’s share over the step, which rotation cannot remove:"
+        "QL1/QL2 after the step at Figure 4.8’s stated mean drop (553 kPa) and load difference (1649 kPa), as "
+        "assumed, beside (2.6); and the change of QL1’s share over the step, which rotation cannot remove:"
     )
     yield ""
     tests: dict[str, Tests] = {name: assumed(name) for name in FORMULATIONS}

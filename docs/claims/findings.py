@@ -3,15 +3,18 @@
 from collections.abc import Iterator, Sequence
 
 from claims.judgement import Judged, named
-from claims.trends import assumed
+from claims.trends import assumed, drop_exponent
 from divideropt.models.divider import FORMULATIONS, rig
+
+KWANS_RULE = "The error is inversely proportional to the drop"
+"""The finding that has a measured number beside it."""
 
 MAIN: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("A tight clearance buys accuracy", ("it too would have a significant effect", "which translates into a lower")),
     ("The two errors cancel at a drop ratio of 0.95", ("cancel each other out at a ratio",)),
     ("The rim does not show in the dynamic response", ("not especially noticeable in the dynamic",)),
     ("The remaining parameters matter little", ("All the remaining parameters",)),
-    ("The error is inversely proportional to the drop", ("For a typical divider valve",)),
+    (KWANS_RULE, ("For a typical divider valve",)),
     ("The signs of the measured errors", ("(signs:",)),
 )
 """What the thesis says in short, and how the statements begin that say it."""
@@ -24,19 +27,28 @@ def findings(judged: Sequence[Judged]) -> Iterator[str]:
         judged: Every statement and trend.
     """
     names = ", ".join(f"`{name}`" for name in FORMULATIONS)
-    yield f"The main findings, with the answers of {names}, and the numbers of the first:"
+    yield (
+        f"The main findings, with the answers of {names}; the numbers are those of `conservative`, and of "
+        "`listing` where its answer differs:"
+    )
     yield ""
     for title, beginnings in MAIN:
         parts = (_part(named(judged, beginning)) for beginning in beginnings)
-        yield f"- *{title}.* {'; '.join(parts)}."
+        yield f"- *{title}.* {'; '.join(parts)}.{' ' + _power() if title == KWANS_RULE else ''}"
     yield f"- *Litres.* {_litres()}"
     yield ""
 
 
 def _part(one: Judged) -> str:
     answers = "/".join(str(one.found[name].answer) for name in FORMULATIONS)
-    first = one.found[next(iter(FORMULATIONS))].figures
-    return f"{one.label} **{answers}** ({first})"
+    first, last = one.found["conservative"], one.found["listing"]
+    figures = first.figures if first.answer is last.answer else f"{first.figures}; `listing`: {last.figures}"
+    return f"{one.label} **{answers}** ({figures})"
+
+
+def _power() -> str:
+    power = drop_exponent([row.steady_error for row in rig.TABLE_4_1], [row.fixed_drop for row in rig.TABLE_4_1])
+    return f"Measured, it goes with the stated drop to the power {power:.2f}."
 
 
 def _litres() -> str:

@@ -126,9 +126,10 @@ def _words() -> Iterator[str]:
         "is met by what rounds to it."
     )
     yield (
-        "- Where several things are asked at once, *in part* means that some are shown. Designs whose outcome is "
-        "not `ok` are left out and counted, but where a single design is asked for: that one is judged as it is, "
-        f"with its outcome. A curve of which less than {100 * criteria.ENOUGH:.0f} % is ok is not judged."
+        "- Where several things are asked at once, *in part* means that some are shown. Of a curve, designs whose "
+        f"outcome is not `ok` are left out and counted; if less than {100 * criteria.ENOUGH:.0f} % are ok, it is not "
+        "judged. A single design that is asked for, and designs that are asked whether they are stable, are judged "
+        "as they are, with their outcome."
     )
     yield ""
 
