@@ -1,6 +1,6 @@
 """The pages `docs/model/claims.md`, every statement of the thesis that a run can show or deny, and `claims_cases.md`.
 
-Run it with `python docs/make_claims.py`; it takes some four minutes on one core.
+Run it with `python docs/make_claims.py`; it takes some two or three minutes on one core.
 """
 
 from pathlib import Path
