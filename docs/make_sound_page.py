@@ -49,6 +49,7 @@ def main(divider: Path, sound: Path) -> None:
         "best": best_table(fronts, problems),
         "carried-over": carried_over(fronts["divider"], problems["sound"]),
         "thesis": thesis_table(problems),
+        "outcomes": outcomes(stores),
     }
     PAGE.write_text(fill(PAGE.read_text("utf-8"), blocks), "utf-8")
     PICTURE.write_text(picture(fronts), "utf-8")
@@ -109,15 +110,26 @@ def carried_over(front: pd.DataFrame, problem: Problem) -> str:
     full[list(problem.space.names)] = front[list(problem.space.names)].to_numpy()
     found = simulated(problem, full[list(problem.model.parameters)])
     told = problem.tell(problem.simulate(front[list(problem.space.names)].to_numpy()))
-    ratio = {name: np.median(np.abs(found[name]) / front[name].abs()) for name in list(COLUMNS)[:4]}
+    names = list(COLUMNS)[:4]
+    ratio = {name: float(np.nanmedian(np.abs(found[name]) / front[name].abs().to_numpy())) for name in names}
+    still = int(nondominated(told.F[told.feasible]).sum())
     return (
         f"Of the {len(front)} designs on the front of `divider.yaml`, {int(told.feasible.sum())} are feasible in "
-        f"`sound.yaml`; {int(nondominated(told.F[told.feasible]).sum())} of those are still non-dominated among "
-        f"themselves. With the losses the designs'\n"
-        f" steady-state error is {ratio['steady_state_error']:.2f} times what it was without (median), "
-        f"the dynamic error {ratio['dynamic_error']:.2f} times, the source pressure {ratio['source_pressure']:.2f} "
-        f"times, the settling time {ratio['settling_time']:.2f} times."
+        f"`sound.yaml`; {still} of those are still non-dominated among themselves.\nWith the losses the steady-state "
+        f"error is {ratio['steady_state_error']:.2f} times what it was without (median), the dynamic error "
+        f"{ratio['dynamic_error']:.2f} times,\nthe source pressure {ratio['source_pressure']:.2f} times, the "
+        f"settling time {ratio['settling_time']:.2f} times."
     )
+
+
+def outcomes(stores: Mapping[str, Path]) -> str:
+    """Say how many simulations the solver gave up."""
+    words = []
+    for name, path in stores.items():
+        parts = sorted((path / "evaluations").glob("*/part-*.parquet"))
+        found = pd.concat([pd.read_parquet(part, columns=["outcome"]) for part in parts])["outcome"]
+        words.append(f"{int((found == 'not_completed').sum())} of the {len(found)} simulations of `{name}.yaml`")
+    return f"The solver gave up on {' and on '.join(words)} (`not_completed`)."
 
 
 def simulated(problem: Problem, full: pd.DataFrame) -> pd.DataFrame:

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 # ruff: noqa: PLC0415
 
 _FILE = click.Path(path_type=Path)
+_SET = click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
+)
+_SCENARIO = click.option("--scenario", default="scenario", metavar="NAME", help="One of the campaign's `scenarios`.")
 
 
 def main() -> None:
@@ -156,17 +160,16 @@ def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
 
 @commands.command()
 @click.argument("campaign", type=_FILE, required=False)
-@click.option(
-    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
-)
+@_SET
+@_SCENARIO
 @click.option("--out", type=_FILE, help="A .csv, .parquet or .html file; CSV to standard output where not given.")
-def simulate(campaign: Path | None, settings: tuple[str, ...], out: Path | None) -> None:
+def simulate(campaign: Path | None, settings: tuple[str, ...], scenario: str, out: Path | None) -> None:
     """Simulate one response: a table, or a picture (.html)."""
     asked = _load(campaign)
     _check_out(out, (".csv", ".parquet", ".html"))
     from divideropt.campaign.simulate import simulate as simulate_one
 
-    response = simulate_one(asked, settings)
+    response = simulate_one(asked, settings, scenario)
     if out is not None and out.suffix == ".html":
         from divideropt.report import write_response
 
@@ -179,17 +182,16 @@ def simulate(campaign: Path | None, settings: tuple[str, ...], out: Path | None)
 
 @commands.command()
 @click.argument("campaign", type=_FILE, required=False)
-@click.option(
-    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
-)
+@_SET
+@_SCENARIO
 @click.option("--out", type=_FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
-def error_budget(campaign: Path | None, settings: tuple[str, ...], out: Path | None) -> None:
+def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str, out: Path | None) -> None:
     """Say what the steady-state error of one design is made of, in percent."""
     asked = _load(campaign)
     _check_out(out, (".csv", ".parquet"))
     from divideropt.campaign.budget import budget_table
 
-    table, verdict = budget_table(asked, settings)
+    table, verdict = budget_table(asked, settings, scenario)
     _write_table(table, out)
     _say(f"outcome: {verdict.outcome} {verdict.text}".rstrip())
 

@@ -109,6 +109,23 @@ def test_the_worst_of_scenarios_is_what_counts():
     ]
 
 
+def test_the_order_of_scenarios_does_not_matter():
+    constraint = "settling_time: {max: 0.2 s, worst_of: [low, cold]}"
+    assert constraint in WORST
+    other = WORST.replace(constraint, "dynamic_error: {max: 1 mL, worst_of: [low, scenario]}")
+    problem = build_problem(parse_campaign(other))
+    assert problem.model.worst[0] == Worst("dynamic_error", ("scenario", "low"))
+    assert problem.constraints[0].quantity.name == "worst.dynamic_error"
+
+
+def test_a_plug_in_has_no_scenarios():
+    text = (
+        "name: toy\nmodel: {kind: 'toy_model:Toy'}\nvariables: {x1: [0, 1]}\n"
+        "objectives: {f1: {worst_of: [scenario]}}\nstrategies: {nsga2: {population: 8, generations: 2}}\n"
+    )
+    assert [message for _, _, message in mistakes(text) if "no scenarios to take the worst of" in message]
+
+
 STEP = "    events:\n      - {load: 1, to: 15 MPa}\n"
 MISTAKES = {
     "two ways to say it": (EVENTS, (STEP, "    step: {load: 1}\n" + STEP), [(6, 5, "delete one of the two")]),
@@ -140,6 +157,8 @@ MISTAKES = {
         ("  low.source_pressure: {goal: 18 MPa}", "  low.source_pressure: {goal: 18 MPa, worst_of: [low]}"),
         [(11, 39, "take a quantity with a plain name")],
     ),
+    "a scenario twice": (WORST, ("[scenario, low]}", "[low, low]}"), [(10, 49, "a second time")]),
+    "an event without rest": (EVENTS, ("over: 50 ms", "over: 0.3 s"), [(17, 3, "event_2.settling_time")]),
     "over others": (
         WORST,
         ("  settling_time: {max: 0.2 s, worst_of: [low, cold]}", "  dynamic_error: {max: 1 mL, worst_of: [low]}"),

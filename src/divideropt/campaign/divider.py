@@ -14,7 +14,7 @@ from divideropt.models import Domain
 from divideropt.models.divider.formulations import FORMULATIONS
 from divideropt.models.divider.parameters import PARAMETER_SETS, PARAMETERS, parameter_set
 from divideropt.models.divider.scenario import Scenario
-from divideropt.models.divider.scenarios import BASE, quantities_by_event_count
+from divideropt.models.divider.scenarios import BASE, quantities_by_scenario
 from divideropt.models.divider.tolerances import (
     DEFAULT_MAX_STEPS,
     DEFAULT_METHOD,
@@ -25,8 +25,7 @@ from divideropt.models.divider.tolerances import (
 from divideropt.ode import METHODS, SolverSettings
 
 _LOSSES = {"none": "as section 2.3 assumes", "entrance": "`groove_loss_factor` velocity heads, at both ends"}
-_RESERVED = ("worst", "least")
-_SCENARIO_NAME = re.compile(r"[a-z][a-z0-9_]{0,31}", re.ASCII)
+_SCENARIO_NAME = re.compile(schemas.scenario_name(), re.ASCII)
 
 
 def divider_tables(model: object) -> Tables:
@@ -39,12 +38,16 @@ def divider_tables(model: object) -> Tables:
     others = section.get("scenarios")
     named = others if isinstance(others, Mapping) else {}
     scenarios = {BASE: section.get("scenario"), **{str(name): raw for name, raw in named.items()}}
-    return Tables(PARAMETERS, quantities_by_event_count({name: _event_count(raw) for name, raw in scenarios.items()}))
+    return Tables(PARAMETERS, quantities_by_scenario({name: _measured(raw) for name, raw in scenarios.items()}))
 
 
-def _event_count(scenario: object) -> int:
-    events = scenario.get("events") if isinstance(scenario, Mapping) else None
-    return max(len(events), 1) if isinstance(events, list | tuple) else 1
+def _measured(scenario: object) -> tuple[int, ...]:
+    """The events of a scenario as written that have metrics; of a wrong one all that it seems to have."""
+    try:
+        return ScenarioConfig.model_validate(scenario or {}).to_scenario().measured_events
+    except ValueError:  # has its own mistakes
+        events = scenario.get("events") if isinstance(scenario, Mapping) else None
+        return tuple(range(1, len(events))) if isinstance(events, list | tuple) else ()
 
 
 def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConfig]:
@@ -57,10 +60,10 @@ def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConf
 def _objections_to(name: str) -> Iterator[str]:
     if name == BASE:
         yield f"{BASE!r} is the name of the scenario above; give this one another"
+    elif name in schemas.RESERVED_NAMES or name.startswith("event_"):
+        yield f"{show(name)} already means something in a column's name; give the scenario another"
     elif not _SCENARIO_NAME.fullmatch(name):
         yield f"{show(name)} cannot name a scenario; use 1 to 32 of a-z, 0-9 and _, a letter first"
-    elif name in _RESERVED or name.startswith("event_"):
-        yield f"{show(name)} already means something in a column's name; give the scenario another"
 
 
 class SolverConfig(Section):
@@ -104,7 +107,11 @@ class DividerConfig(Section):
     """What a pilot groove's entrance and exit take off its pressure drop."""
     scenario: ScenarioConfig = Field(default_factory=ScenarioConfig)
     """What happens to the valve."""
-    scenarios: Annotated[Mapping[str, ScenarioConfig], AfterValidator(_named)] = Field(default_factory=dict)
+    scenarios: Annotated[
+        Mapping[str, ScenarioConfig],
+        AfterValidator(_named),
+        Field(json_schema_extra={"propertyNames": {"pattern": schemas.scenario_name()}}),
+    ] = Field(default_factory=dict)
     """What else happens to each design, by names for `worst_of`; each complete in itself."""
     solver: SolverConfig = Field(default_factory=SolverConfig)
     """How the response is integrated."""
@@ -115,8 +122,8 @@ class DividerConfig(Section):
 
     def tables(self) -> Tables:
         """Return the model's parameters and quantities by name."""
-        counts = {name: len(scenario.events) for name, scenario in self.all_scenarios().items()}
-        return Tables(PARAMETERS, quantities_by_event_count(counts))
+        events = {name: scenario.measured_events for name, scenario in self.all_scenarios().items()}
+        return Tables(PARAMETERS, quantities_by_scenario(events))
 
     def all_scenarios(self) -> dict[str, Scenario]:
         """Return every scenario by name, that of `scenario` first."""

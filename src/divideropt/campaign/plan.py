@@ -55,11 +55,11 @@ def build_model(campaign: Campaign) -> Model:
     return Scenarios(models, worst) if worst or len(models) > 1 else models[BASE]
 
 
-def base_divider(model: Model) -> Divider | None:
-    """Return the divider under the campaign's own scenario, or None where the model is another."""
+def dividers(model: Model) -> Mapping[str, Divider]:
+    """Return the divider under each scenario by name, the campaign's own first; nothing for another model."""
     if isinstance(model, Scenarios):
-        return model.base
-    return model if isinstance(model, Divider) else None
+        return model.models
+    return {BASE: model} if isinstance(model, Divider) else {}
 
 
 def build_problem(campaign: Campaign) -> Problem:

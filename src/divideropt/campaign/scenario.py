@@ -11,7 +11,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf
 from divideropt.campaign.sections import Section, mistake
 from divideropt.models import Domain
-from divideropt.models.divider.scenario import Event, Scenario, load_step
+from divideropt.models.divider.scenario import INSTANT, Event, Scenario, load_step
 
 Pressure = Annotated[float, Measure("Pa", POSITIVE)]
 Flow = Annotated[float, Measure("m^3/s", POSITIVE)]
@@ -21,8 +21,10 @@ Instant = Annotated[float, Measure("s", Domain(0.0))]
 Load = Annotated[int, Field(strict=True, ge=1, le=2)]
 
 _STARTS = MappingProxyType({"settled": "at the equilibrium before the first event", "cold": "all states zero"})
+MOST_EVENTS = 100
+"""More in one scenario is a slip; each makes fifteen columns."""
+
 _DEFAULT_END = 1.0
-_ROUNDING = 1e-9
 _CHANGES = ("load", "load_pressures", "source_flow", "spool_position")
 
 
@@ -83,7 +85,7 @@ class ScenarioConfig(Section):
     """φ/φ0, the angle that sets the ratio."""
     load_pressures: tuple[Pressure, Pressure] = (10e6, 10e6)
     """Steady load pressures before the first event, by which the load orifices are sized."""
-    events: tuple[EventConfig, ...] = ()
+    events: Annotated[tuple[EventConfig, ...], Field(max_length=MOST_EVENTS)] = ()
     """Any events, in the order of time, in place of `step`."""
     step: StepConfig | None = Field(default_factory=lambda data: None if data.get("events") else StepConfig())
     """The load step, a scenario of one event."""
@@ -169,7 +171,7 @@ def _order_rules(timeline: Sequence[tuple[float, float]]) -> Iterator[InitErrorD
         if at <= before:
             sentence = f"the event at {at:g} s does not come after the one at {before:g} s; put events in order"
             yield mistake(("events", i, "at"), f"{sentence}, and what happens at once into one event")
-        elif at < before + over:
+        elif before + over - at > INSTANT * max(at, before + over):
             sentence = f"the event at {at:g} s begins before the one at {before:g} s is over, at {before + over:g} s"
             yield mistake(("events", i, "at"), f"{sentence}; let it begin later")
 
@@ -185,12 +187,12 @@ def _end_rules(raw: Mapping[str, Any], last: tuple[float, float], cold: bool) ->
         return
     several = bool(raw.get("events"))
     what, end = "last event" if several else "step", given if cold else at + given
-    if end <= at + over:
+    if end - at - over <= INSTANT * end:
         where = (key,) if raw.get(key) is not None or several else ("step", "at")
         over_words = f", which takes {over:g} s" if over else ""
         sentence = f"the simulation ends at {end:g} s, not after the {what} at {at:g} s{over_words}"
         yield mistake(where, f"{sentence}; end it later")
-    elif end < (at + needed) * (1 - _ROUNDING):
+    elif at + needed - end > INSTANT * end:
         where = ("accumulation_time",) if "accumulation_time" in raw else (key,)
         sentence = (
             f"the simulation ends {end - at:g} s after the {what}, before the accumulation time of {needed:g} s"

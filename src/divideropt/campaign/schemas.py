@@ -7,6 +7,7 @@ from divideropt.campaign.fields import POSITIVE, Measure, measure_of
 from divideropt.models import Parameter, Quantity
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import QUANTITIES
+from divideropt.models.divider.scenarios import BASE
 from divideropt.models.divider.tolerances import STATE_UNITS
 
 Schema = dict[str, Any]
@@ -48,7 +49,17 @@ def tolerances() -> Schema:
 
 def _prefixable(schema: Schema) -> Schema:
     """Let names begin with an event or a scenario, which the schema cannot know: `event_1.settling_time`."""
-    return {**schema, "patternProperties": {r"^[a-z][a-z0-9_]*\.[a-z]": {}}}
+    return {**schema, "patternProperties": {rf"^([a-z][a-z0-9_]*\.){{1,2}}({'|'.join(QUANTITIES)})$": {}}}
+
+
+RESERVED_NAMES = ("worst", "least")
+"""What a column's name may begin with already."""
+
+
+def scenario_name() -> str:
+    """Pattern of a scenario's name."""
+    others = "|".join([BASE, *RESERVED_NAMES])
+    return rf"^(?!({others})$|event_)[a-z][a-z0-9_]{{0,31}}$"
 
 
 def _each(describe: Callable[[Quantity], Schema]) -> Schema:

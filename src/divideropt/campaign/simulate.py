@@ -8,13 +8,14 @@ import numpy as np
 import pandas as pd
 
 from divideropt.campaign.config import Campaign
-from divideropt.campaign.plan import base_divider, build_model
+from divideropt.campaign.plan import build_model, dividers
 from divideropt.errors import UsageError
 from divideropt.models import Outcome, Verdict
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Response
+from divideropt.models.divider.scenarios import BASE
 from divideropt.units import parse_measure
 
 POINTS_PER_STEP = 4
@@ -50,12 +51,13 @@ class SimulatedResponse:
     verdict: Verdict
 
 
-def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
+def simulate(campaign: Campaign, settings: Sequence[str], scenario: str = BASE) -> SimulatedResponse:
     """Simulate one design of a campaign.
 
     Args:
         campaign: Whose model, scenario and parameters.
         settings: `NAME=VALUE` with a unit, for parameters that differ.
+        scenario: Under which of the campaign's scenarios.
 
     Returns:
         The response.
@@ -63,29 +65,38 @@ def simulate(campaign: Campaign, settings: Sequence[str]) -> SimulatedResponse:
     Raises:
         UsageError: A setting is no parameter, or out of its domain; or the model has no response to show.
     """
-    model, parameters = chosen_design(campaign, settings)
+    model, parameters = chosen_design(campaign, settings, scenario)
     try:
         with np.errstate(all="ignore"):  # a failed design says so by its outcome
             response = model.respond(parameters)
             return SimulatedResponse(_table(response), measure(response)[1])
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
-        verdict = Verdict(Outcome.CRASHED, f"the model broke down: {type(error).__name__}: {error}")
-        return SimulatedResponse(pd.DataFrame(columns=list(COLUMNS), dtype=float), verdict)
+        return SimulatedResponse(pd.DataFrame(columns=list(COLUMNS), dtype=float), crashed(error))
 
 
-def chosen_design(campaign: Campaign, settings: Sequence[str]) -> tuple[Divider, dict[str, float]]:
-    """Return a campaign's divider, and one design's parameters by name, SI.
+def crashed(error: Exception) -> Verdict:
+    """Word an exception of the model's as an outcome."""
+    return Verdict(Outcome.CRASHED, f"the model broke down: {type(error).__name__}: {error}")
+
+
+def chosen_design(campaign: Campaign, settings: Sequence[str], scenario: str) -> tuple[Divider, dict[str, float]]:
+    """Return a campaign's divider under a scenario, and one design's parameters by name, SI.
 
     Args:
         campaign: Whose model, scenario and parameters.
         settings: `NAME=VALUE` with a unit, for parameters that differ.
+        scenario: Name of the scenario.
 
     Raises:
-        UsageError: A setting is no parameter, out of its domain, or given twice; or the model is not the divider.
+        UsageError: A setting is no parameter, out of its domain, or given twice; there is no such scenario; or the
+            model is not the divider.
     """
-    model = base_divider(build_model(campaign))
-    if model is None:
+    models = dividers(build_model(campaign))
+    if not models:
         raise UsageError("this campaign's model is a plug-in, which has no response to show; see `evaluate`")
+    if scenario not in models:
+        raise UsageError(f"--scenario {scenario}: the campaign has {', '.join(models)}; name one of them")
+    model = models[scenario]
     given = [_read(setting) for setting in settings]
     twice = [name for name, count in Counter(name for name, _ in given).items() if count > 1]
     if twice:

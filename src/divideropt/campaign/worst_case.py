@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import InitErrorDetails
 
-from divideropt.campaign.sections import mistake, unknown
+from divideropt.campaign.sections import Loc, mistake, unknown
 from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.scenarios import BASE, Worst
 
@@ -15,39 +15,55 @@ if TYPE_CHECKING:
 
 def worst_case_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say what is wrong with every `worst_of`, judged on the campaign as written."""
-    scenarios = [BASE, *_mapping(_mapping(raw, "model"), "scenarios")]
-    given: dict[str, object] = {}
+    model = _mapping(raw, "model")
+    scenarios = [BASE, *_mapping(model, "scenarios")]
+    given: dict[str, set[str]] = {}
     for section in ("objectives", "constraints"):
         for name, entry in _mapping(raw, section).items():
             asked = entry.get("worst_of") if isinstance(entry, Mapping) else None
-            if not isinstance(asked, list | tuple) or not asked:
+            if not isinstance(asked, list | tuple) or not asked or not all(isinstance(n, str) for n in asked):
                 continue
             where = (section, name, "worst_of")
+            if ":" in str(model.get("kind")):
+                yield mistake(
+                    where, "a model of your own has no scenarios to take the worst of; delete it", at_key=True
+                )
+                continue
             if name not in QUANTITIES:
                 sentence = f"{name} has no worst case over scenarios; take a quantity with a plain name"
                 yield mistake(where, sentence, at_key=True)
-            for i, scenario in enumerate(asked):
-                if scenario not in scenarios:
-                    yield mistake((*where, i), unknown("scenario", str(scenario), scenarios))
-            if list(given.setdefault(name, list(asked))) != list(asked):  # type: ignore[call-overload]
+            yield from _scenario_rules(where, asked, scenarios)
+            if given.setdefault(name, set(asked)) != set(asked):
                 sentence = f"{name} is taken over other scenarios among the objectives; name the same in both"
                 yield mistake(where, sentence)
 
 
+def _scenario_rules(where: Loc, asked: Sequence[str], scenarios: Sequence[str]) -> Iterator[InitErrorDetails]:
+    for i, scenario in enumerate(asked):
+        if scenario not in scenarios:
+            yield mistake((*where, i), unknown("scenario", scenario, scenarios))
+        elif scenario in asked[:i]:
+            yield mistake((*where, i), f"{scenario} is named a second time; delete one of the two")
+
+
 def worst_cases(campaign: "Campaign") -> tuple[Worst, ...]:
     """List what a campaign's objectives and constraints need gathered, each once."""
-    found = [Worst(name, objective.worst_of) for name, objective in campaign.objectives.items() if objective.worst_of]
-    for name, constraint in campaign.constraints.items():
-        if constraint.worst_of and constraint.max is not None:
-            found.append(Worst(name, constraint.worst_of))
-        if constraint.worst_of and constraint.min is not None:
-            found.append(Worst(name, constraint.worst_of, least=True))
+    order = [BASE, *getattr(campaign.model, "scenarios", ())]
+    found = [Worst(name, _sorted(o.worst_of, order)) for name, o in campaign.objectives.items() if o.worst_of]
+    for name, c in campaign.constraints.items():
+        over = _sorted(c.worst_of, order)
+        found += [Worst(name, over)] if over and c.max is not None else []
+        found += [Worst(name, over, least=True)] if over and c.min is not None else []
     return tuple(dict.fromkeys(found))
 
 
 def gathered_name(quantity: str, scenarios: Sequence[str], *, least: bool = False) -> str:
     """Name of the quantity that stands for one under `worst_of`: itself where nothing is gathered."""
     return Worst(quantity, tuple(scenarios), least).name if scenarios else quantity
+
+
+def _sorted(scenarios: Sequence[str], order: Sequence[str]) -> tuple[str, ...]:
+    return tuple(sorted(scenarios, key=order.index))
 
 
 def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

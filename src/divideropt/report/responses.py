@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.campaign.plan import base_divider
+from divideropt.campaign.plan import dividers
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETER_SETS, parameter_set
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Phase, Response
+from divideropt.models.divider.scenarios import BASE
 from divideropt.ode import SolverStatus
 from divideropt.problem import Problem
 from divideropt.report.display import rounded
@@ -86,7 +87,7 @@ def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Des
     Returns:
         The responses, or None where the model is not the divider and has none.
     """
-    model = base_divider(problem.model)
+    model = dividers(problem.model).get(BASE)
     if model is None:
         return None
     sets, notes = [], []

@@ -22,7 +22,8 @@ release share the number. Version 2: fronts say which points were verified.
 
 VERIFIED = (
     "yes: simulated again by the model's reference, every objective's deviation within the campaign's tolerance and "
-    "the outcome the same; deviates: simulated again and not so; no: not simulated again"
+    "the outcome the same (constraints are not compared); deviates: simulated again and not so; no: not simulated "
+    "again"
 )
 
 DEVIATION_FLOOR = 0.01

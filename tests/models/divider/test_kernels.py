@@ -16,7 +16,7 @@ NESTED = (
     "fold_pilot",
     "fold_side",
     "load_coefficients",
-    "_gather",
+    "gather",
     "_excess",
     "_carry",
     "_floored",

@@ -158,9 +158,28 @@ def test_quantities_of_earlier_events_have_a_prefix() -> None:
     assert model.quantities["event_1.dynamic_error"].signed
 
 
-def test_an_event_too_short_to_settle_has_no_settling_time(measured, design) -> None:
+def test_an_event_too_short_to_settle_has_no_metrics(measured, design) -> None:
+    # What it would have come to was never reached: the next event's change is not counted from there either.
     events = (load_step(1, 15e6), load_step(1, 10e6, at=0.02))
     q = measured(Divider(scenario=Scenario(events=events), settings=TIGHT), design())
-    assert np.isnan(q["event_1.settling_time"])
-    assert np.isfinite(q["event_1.steady_state_error"])
+    assert all(np.isnan(q[f"event_1.{name}"]) for name in EVENT_QUANTITIES)
+    assert np.isnan(q["load_regulation"])
+    assert np.isfinite(q["steady_state_error"])
     assert q["outcome"] is Outcome.OK
+
+
+def test_times_that_differ_by_rounding_are_one() -> None:
+    ramp = Event(0.1, 0.7, load_pressures=(15e6, None))  # 0.1 + 0.7 is 0.7999999999999999
+    scenario = Scenario(events=(ramp, Event(0.8, source_flow=8e-4)), end_time=2.0)
+    assert [(s.begin, s.end) for s in scenario.spans()] == [(0.0, 0.1), (0.1, 0.8), (0.8, 2.0)]
+    late = Event(0.1, 0.2, load_pressures=(15e6, None))  # 0.1 + 0.2 is 0.30000000000000004
+    Scenario(events=(late, Event(0.3, source_flow=8e-4)), end_time=2.0)
+
+
+def test_a_ramp_that_lasts_until_the_next_event_has_no_metrics(measured, design) -> None:
+    events = (Event(0.0, 0.1, load_pressures=(15e6, None)), Event(0.1, 0.1, load_pressures=(10e6, None)))
+    scenario = Scenario(events=events)
+    assert scenario.measured_events == ()
+    model = Divider(scenario=scenario, settings=TIGHT)
+    assert list(model.quantities) == list(QUANTITIES)
+    assert measured(model, design())["outcome"] is Outcome.OK

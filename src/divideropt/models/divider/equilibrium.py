@@ -102,9 +102,9 @@ def rest_on_rigid_stop(design: Design, start: FloatArray) -> Equilibrium | None:
     if design[0].stop != Stop.FROZEN:
         return None
     for x in sorted((-stop, stop), key=lambda place: abs(place - start[_X])):
-        state = _hold(design, initial_guess(design), x)
-        if state is not None and rates(0.0, state, design)[_XDOT] * x >= 0:
-            return Equilibrium(state, 0.0, "rigid stop")
+        held = _held(design, initial_guess(design), x)
+        if held is not None and rates(0.0, held.state, design)[_XDOT] * x >= 0:
+            return replace(held, method="rigid stop")
     return None
 
 
@@ -285,11 +285,15 @@ def _held_states(design: Design, places: FloatArray) -> list[FloatArray | None]:
 
 
 def _hold(design: Design, guess: FloatArray, x: float) -> FloatArray | None:
-    """Solve for the pressures with the spool held at `x`."""
+    """Solve for the pressures with the spool held at `x`; return the state."""
+    held = _held(design, guess, x)
+    return None if held is None else held.state
+
+
+def _held(design: Design, guess: FloatArray, x: float) -> Equilibrium | None:
     y = guess.copy()
     y[_X] = x
-    found = _newton(design, y, _PRESSURES, _PRESSURES)
-    return None if found is None else found.state
+    return _newton(design, y, _PRESSURES, _PRESSURES)
 
 
 def _force_at(design: Design, guess: FloatArray, x: float) -> float:

@@ -251,8 +251,8 @@ def fold_pilot(position, d):  # type: ignore[no-untyped-def]
     """
     near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
     conductance, length, leakage = d.groove_conductance, d.groove_length, d.groove_leakage
-    _gather(fold_side(d.pilot, conductance, length, leakage, near, far, 1.0), d.pilot_bypass, d.pilot_1)
-    _gather(fold_side(d.pilot, conductance, length, leakage, far, near, d.leakage_sign), d.pilot_bypass, d.pilot_2)
+    gather(fold_side(d.pilot, conductance, length, leakage, near, far, 1.0), d.pilot_bypass, d.pilot_1)
+    gather(fold_side(d.pilot, conductance, length, leakage, far, near, d.leakage_sign), d.pilot_bypass, d.pilot_2)
 
 
 @njit(cache=True, error_model="numpy")
@@ -306,7 +306,7 @@ def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # 
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(rows, bypass, net):  # type: ignore[no-untyped-def]
+def gather(rows, bypass, net):  # type: ignore[no-untyped-def]
     """Gather a side's flows into the balances of supply, flow chamber and end chamber, shape (3, 3)."""
     for i in range(3):
         net[0, i] = -2.0 * bypass * rows[0, i]

@@ -2,7 +2,8 @@
 
 The steady quantities are those of the state in which an event ends: of the equilibrium reached for a settled start
 without friction, else of the last instant before the next event or the end, as the author took them. The last event's
-have plain names; those of an earlier one are prefixed `event_1.`, `event_2.` and so on.
+have plain names; those of an earlier one are prefixed `event_1.`, `event_2.` and so on, and are not defined where the
+next event comes before the flows have settled.
 """
 
 import math
@@ -20,10 +21,10 @@ from divideropt.models.divider.formulations import Stop
 from divideropt.models.divider.ideal import desired_flows
 from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.quantities import quantities_of
-from divideropt.models.divider.response import Phase, Response
+from divideropt.models.divider.response import Phase, Response, distance_from_rest
 from divideropt.models.divider.transient import FlowError, largest_value
 from divideropt.models.divider.validity import groove_quantities
-from divideropt.models.divider.verdicts import judge
+from divideropt.models.divider.verdicts import REST_TOLERANCE, judge
 
 SETTLING_BAND = 0.02
 """Band around the final flow of branch 1, section 3.1."""
@@ -43,7 +44,7 @@ def measure(response: Response) -> tuple[FloatArray, Verdict]:
     Returns:
         The quantities in the order of `quantities_of(events)`, NaN where one is not defined, and the verdict.
     """
-    names = quantities_of(len(response.scenario.events))
+    names = quantities_of(response.scenario.measured_events)
     found = dict.fromkeys(names, math.nan)
     found |= _geometric(response) | _extremes(response) | groove_quantities(response)
     found["stability_margin"] = _worst_margin(response)
@@ -53,8 +54,8 @@ def measure(response: Response) -> tuple[FloatArray, Verdict]:
         found["ratio_bias"] = _signed_error(response, first, flows)
     last = len(response.windows) - 1
     for number, window in enumerate(response.windows):
-        prefix = "" if number == last else f"event_{number + 1}."
         metrics, flows = _event_metrics(response, window, flows)
+        prefix = "" if number == last else f"event_{number + 1}."
         found |= {prefix + name: value for name, value in metrics.items()}
     return np.array([found[name] for name in names]), judge(response, found)
 
@@ -66,6 +67,9 @@ def _event_metrics(
     stay = window[-1]
     final = None if stay.span.moving else _final_state(response, stay)
     if final is None or any(phase.trajectory is None for phase in window):
+        return {}, None
+    last = stay is response.phases[-1]  # whose outcome says whether it has settled
+    if not last and response.rests_at_root and distance_from_rest(stay) > REST_TOLERANCE:
         return {}, None
     flows = stay.load_flows(final)
     metrics = _steady(response, stay, final, flows) | _dynamic(response, window, flows)
@@ -104,7 +108,7 @@ def _worst_margin(response: Response) -> float:
         if phase.rest is None or (rigid and rests_on_stop(phase.design, phase.rest.state)):
             return math.nan
         margins.append(stability_margin(phase.design, phase.rest.state))
-    return min(margins)
+    return float(np.min(margins))
 
 
 def _final_state(response: Response, stay: Phase) -> FloatArray | None:

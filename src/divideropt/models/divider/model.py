@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
 from divideropt.ode import SolverSettings
 
-REFERENCE_METHOD = "Radau"
+REFERENCE_METHOD, OTHER_REFERENCE_METHOD = "Radau", "LSODA"
 REFERENCE_RTOL = 1e-10
 REFERENCE_MAX_STEPS = 200_000
 """A hundred times what a design that settles needs at that tolerance."""
@@ -47,10 +48,10 @@ class Divider:
         """Every parameter, in the order of a design's columns."""
         return PARAMETERS
 
-    @property
+    @cached_property
     def quantities(self) -> Mapping[str, Quantity]:
         """Every quantity, in the order of a row."""
-        return quantities_of(len(self.scenario.events))
+        return quantities_of(self.scenario.measured_events)
 
     def evaluate(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
         """Simulate a batch.
@@ -69,10 +70,12 @@ class Divider:
         return np.array(rows).reshape(len(designs), len(self.quantities)), verdicts
 
     def reference(self) -> "Divider":
-        """Return the same valve and scenario, integrated by SciPy's Radau at a relative tolerance of 1e-10."""
-        return replace(
-            self, settings=solver_settings(REFERENCE_METHOD, REFERENCE_RTOL, max_steps=REFERENCE_MAX_STEPS)
-        )
+        """Return the same valve and scenario, integrated by a second solver at a relative tolerance of 1e-10.
+
+        It is SciPy's Radau, or its LSODA where Radau is the first.
+        """
+        method = REFERENCE_METHOD if self.settings.method != REFERENCE_METHOD else OTHER_REFERENCE_METHOD
+        return replace(self, settings=solver_settings(method, REFERENCE_RTOL, max_steps=REFERENCE_MAX_STEPS))
 
     def respond(self, parameters: Mapping[str, float], reading: Formulation | None = None) -> Response:
         """Simulate one design and keep its response.

@@ -13,9 +13,6 @@ STEADY = 0.02
 FEWEST_CROSSINGS = 4
 """Of the equilibrium's flow in each of those quarters: two whole swings, so that no slow drift counts."""
 
-SAMPLES = 4000
-"""Of a quarter: enough for some hundred swings."""
-
 
 @dataclass(frozen=True)
 class Oscillation:
@@ -50,6 +47,8 @@ def sustained_oscillation(phase: Phase, smallest: float) -> Oscillation | None:
     early, late = (
         _swing(phase, rest, end - left * quarter, end - right * quarter) for left, right in ((2, 1), (1, 0))
     )
+    if min(early.size, late.size) == 0:
+        return None
     amplitudes = [float(np.abs(swing).max()) for swing in (early, late)]
     crossings = [int(np.count_nonzero(np.diff(np.signbit(swing)))) for swing in (early, late)]
     steady = abs(amplitudes[1] - amplitudes[0]) <= STEADY * amplitudes[0]
@@ -59,7 +58,9 @@ def sustained_oscillation(phase: Phase, smallest: float) -> Oscillation | None:
 
 
 def _swing(phase: Phase, rest: float, begin: float, end: float) -> FloatArray:
-    """Flow to load 1 over a stretch, less the equilibrium's, in shares of it, shape (SAMPLES,)."""
-    assert phase.trajectory is not None
-    states = phase.trajectory.at(np.linspace(begin, end, SAMPLES))
+    """Flow to load 1 at the nodes of the solver's steps over a stretch, less the equilibrium's, in shares of it."""
+    run = phase.trajectory
+    assert run is not None
+    steps = slice(*np.searchsorted(run.edges, [begin, end]))
+    states = np.swapaxes(run.values[steps], 1, 2).reshape(-1, run.values.shape[1])
     return np.asarray(phase.load_flows(states)[:, 0] / rest - 1)

@@ -14,7 +14,7 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Formulation
-from divideropt.models.divider.kernels import fold_side
+from divideropt.models.divider.kernels import fold_side, gather
 
 GROOVE_FACTOR = 185.0
 """Laminar flow through an equilateral triangle of side b: Q = -b⁴/(185 μ) dP/dl, (A.3)."""
@@ -81,13 +81,10 @@ class PilotSide:
 
     def net(self) -> FloatArray:
         """What both grooves add to the supply, the flow chamber and the end chamber, shape (3, 3)."""
-        return np.array(
-            [
-                -2.0 * self.inlet,
-                2.0 * self.outlet + self.chamber_leakage,
-                2.0 * self.tap - self.end_leakage,
-            ]
-        )
+        rows = (self.inlet, self.arriving, self.tap, self.outlet, self.end_leakage, self.chamber_leakage)
+        net = np.empty((3, 3))
+        gather(np.array(rows), 1.0, net)
+        return net
 
 
 def pilot_sides(

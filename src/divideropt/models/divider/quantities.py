@@ -1,6 +1,6 @@
 """The divider's results by name: the metrics of section 3.1 and what a design's geometry makes."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -96,13 +96,13 @@ EVENT_QUANTITIES = (
 """The quantities that every event of a scenario has."""
 
 
-def quantities_of(events: int) -> Mapping[str, Quantity]:
-    """Return every quantity under a scenario of so many events: `QUANTITIES`, `event_1.settling_time` and so on.
+def quantities_of(events: Iterable[int]) -> Mapping[str, Quantity]:
+    """Return every quantity under a scenario: `QUANTITIES`, `event_1.settling_time` and so on.
 
     Args:
-        events: The last one's quantities have plain names, those of the earlier ones the event's prefix.
+        events: Numbers of the earlier events that have metrics; the last event's quantities have plain names.
     """
-    return {**QUANTITIES, **{q.name: q for number in range(1, events) for q in _of_event(number)}}
+    return {**QUANTITIES, **{q.name: q for number in events for q in _of_event(number)}}
 
 
 def _of_event(number: int) -> Iterator[Quantity]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,13 @@ from divideropt.models.divider.kernels import STATES, jacobian, load_coefficient
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.scenario import Scenario, Span
 from divideropt.ode import Event, SolverSettings, SolverStatus, Trajectory, integrate
+
+RESCUER = "Radau"
+"""LSODA and BDF take tiny steps where a fast mode is hardly damped, since their formulas of higher order would blow
+it up; this one does not."""
+
+RESCUE_STEPS = 500
+"""Ten times what it needs then; a design that chatters is given up."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +110,13 @@ class Response:
         )
 
 
+def distance_from_rest(phase: Phase) -> float:
+    """Largest distance of a load flow at a phase's end from the equilibrium's, in shares of it; NaN if unknown."""
+    if phase.end is None or phase.rest is None:
+        return math.nan
+    return float(np.max(np.abs(phase.load_flows(phase.end) / phase.load_flows(phase.rest.state) - 1)))
+
+
 def respond(
     parameters: Mapping[str, float],
     formulation: Formulation,
@@ -181,6 +195,15 @@ def _run(
     settings: SolverSettings,
     event: Event | None = None,
 ) -> Trajectory:
-    return integrate(
-        lambda t, y: rates(t, y, design), lambda t, y: jacobian(t, y, design), span, start, settings, event
-    )
+    """Integrate; where a multistep method's budget ends, let an implicit Runge-Kutta method try."""
+
+    def attempt(with_settings: SolverSettings) -> Trajectory:
+        return integrate(
+            lambda t, y: rates(t, y, design), lambda t, y: jacobian(t, y, design), span, start, with_settings, event
+        )
+
+    run = attempt(settings)
+    if run.status is not SolverStatus.STEP_BUDGET or settings.method == RESCUER:
+        return run
+    rescued = attempt(replace(settings, method=RESCUER, max_steps=min(settings.max_steps, RESCUE_STEPS)))
+    return rescued if rescued.status in (SolverStatus.FINISHED, SolverStatus.EVENT) else run

@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
+INSTANT = 1e-9
+"""Times that differ by less than this part of the whole are one: 0.1 s + 0.2 s is 0.3 s."""
+
 
 @dataclass(frozen=True)
 class Inputs:
@@ -114,8 +117,9 @@ class Scenario:
         if not self.events:
             raise ValueError("the scenario has no event; give one, such as load_step(1, 15e6)")
         begins = [*(event.at for event in self.events), self.end_time]
-        overlap = any(event.at + event.over > after for event, after in zip(self.events, begins[1:], strict=True))
-        unfinished = self.events[-1].at + self.events[-1].over >= self.end_time
+        spare = [after - event.at - event.over for event, after in zip(self.events, begins[1:], strict=True)]
+        overlap = any(time < -INSTANT * self.end_time for time in spare)
+        unfinished = spare[-1] <= INSTANT * self.end_time
         if begins[0] < 0.0 or overlap or unfinished or any(late <= early for early, late in pairwise(begins)):
             raise ValueError("events must follow each other, each over before the next begins, and before the end")
 
@@ -123,6 +127,12 @@ class Scenario:
     def initial(self) -> Inputs:
         """The inputs before the first event."""
         return Inputs(self.source_flow, self.spool_position, self.load_pressures)
+
+    @property
+    def measured_events(self) -> tuple[int, ...]:
+        """The events before the last, from 1, after which the inputs stay a while: those that have metrics."""
+        earlier = range(len(self.events) - 1)
+        return tuple(span.event + 1 for span in self.spans() if span.event in earlier and not span.moving)
 
     @property
     def last_event_time(self) -> float:
@@ -136,9 +146,10 @@ class Scenario:
         ends = [event.at for event in self.events[1:]] + [self.end_time]
         for number, (event, end) in enumerate(zip(self.events, ends, strict=True)):
             arrived, after = event.at + event.over, event.applied_to(inputs)
+            stays = end - arrived > INSTANT * self.end_time
             if event.over > 0.0:
-                spans.append(Span(event.at, arrived, inputs, after, number))
-            if end > arrived:
+                spans.append(Span(event.at, arrived if stays else end, inputs, after, number))
+            if stays:
                 spans.append(Span(arrived, end, after, after, number))
             inputs = after
         return tuple(spans)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -55,11 +56,10 @@ class Scenarios:
         """Every parameter, in the order of a design's columns."""
         return self.base.parameters
 
-    @property
+    @cached_property
     def quantities(self) -> Mapping[str, Quantity]:
         """Every quantity: of `BASE`, of each other scenario with its name in front, and the worst of some."""
-        counts = {name: len(model.scenario.events) for name, model in self.models.items()}
-        known = quantities_by_event_count(counts)
+        known = quantities_by_scenario({name: model.scenario.measured_events for name, model in self.models.items()})
         return {**known, **{w.name: _quantity_of(w, known) for w in self.worst}}
 
     def evaluate(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
@@ -90,19 +90,19 @@ class Scenarios:
         return replace(self, models={name: model.reference() for name, model in self.models.items()})
 
 
-def quantities_by_event_count(counts: Mapping[str, int]) -> dict[str, Quantity]:
+def quantities_by_scenario(events: Mapping[str, Sequence[int]]) -> dict[str, Quantity]:
     """Return every quantity under some scenarios.
 
     Args:
-        counts: How many events each has, by name; that of `BASE` first.
+        events: Which earlier events of each have metrics, by its name; that of `BASE` first.
 
     Returns:
         By name: `settling_time`, `event_1.settling_time`, `cold_oil.settling_time`, `cold_oil.event_1.settling_time`.
     """
-    return {q.name: q for name, events in counts.items() for q in _of_scenario(name, events)}
+    return {q.name: q for name, numbers in events.items() for q in _of_scenario(name, numbers)}
 
 
-def _of_scenario(name: str, events: int) -> Iterator[Quantity]:
+def _of_scenario(name: str, events: Sequence[int]) -> Iterator[Quantity]:
     for q in quantities_of(events).values():
         if name == BASE:
             yield q

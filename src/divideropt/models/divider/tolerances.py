@@ -10,7 +10,7 @@ from divideropt.ode import SolverSettings
 DEFAULT_METHOD = "LSODA"
 DEFAULT_RTOL = 1e-4
 DEFAULT_MAX_STEPS = 5_000
-"""Twenty times what a design needs at the default tolerance: a chattering one is given up there."""
+"""Twenty times what a design needs at the default tolerance; beyond, another method tries, see `response.RESCUER`."""
 
 FRICTION_SHARE = 0.01
 """Absolute tolerance of ẋ, in shares of ẋ_tan, where there is Coulomb friction."""

@@ -3,13 +3,11 @@
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from divideropt.models.base import Outcome, Verdict
-from divideropt.models.divider.equilibrium import rests_on_stop
+from divideropt.models.divider.equilibrium import rests_on_stop, stability_margin
 from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.oscillation import sustained_oscillation
-from divideropt.models.divider.response import Phase, Response
+from divideropt.models.divider.response import Phase, Response, distance_from_rest
 from divideropt.ode import SolverStatus
 
 REST_TOLERANCE = 1e-3
@@ -50,10 +48,11 @@ def _not_completed(response: Response, found: Mapping[str, float]) -> Verdict | 
 
 
 def _limit_cycle(response: Response, found: Mapping[str, float]) -> Verdict | None:
-    last, margin = response.phases[-1], found["stability_margin"]
+    last = response.phases[-1]
     swing = sustained_oscillation(last, REST_TOLERANCE)
-    if swing is None:
+    if swing is None or last.rest is None:
         return None
+    margin = stability_margin(last.design, last.rest.state)
     around = "an unstable equilibrium" if margin < 0.0 else "an equilibrium that is stable against small disturbances"
     text = (
         f"the flows never settle: branch 1 swings by {100 * swing.amplitude:.3g} % to either side, "
@@ -99,8 +98,7 @@ def _unsettled(response: Response, found: Mapping[str, float]) -> Verdict | None
     if last.end is None or last.rest is None:
         return None
     if response.rests_at_root:
-        rest = last.load_flows(last.rest.state)
-        off = float(np.max(np.abs(last.load_flows(last.end) / rest - 1)))
+        off = distance_from_rest(last)
         settled = off <= REST_TOLERANCE and not math.isnan(found["settling_time"])
         text = f"at the end a load flow is {100 * off:.3g} % from that of the equilibrium"
     else:
