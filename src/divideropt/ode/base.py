@@ -6,9 +6,11 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 FloatArray = NDArray[np.float64]
 Rates = Callable[[float, FloatArray], FloatArray]
+Event = Callable[[FloatArray], float]
 
 NODES_PER_STEP = 8
 """Nodes on a step: the polynomial through them is of degree 7, above the order of every stiff method here."""
@@ -101,6 +103,23 @@ def lagrange_weights(theta: FloatArray) -> FloatArray:
     rows = exact.any(axis=1)
     terms[rows] = exact[rows]
     return np.asarray(terms / terms.sum(axis=1, keepdims=True))
+
+
+def crossing(event: Event, values: FloatArray) -> float:
+    """Find where on a step an event that is positive at its end has become so.
+
+    Args:
+        event: A function of the state.
+        values: States at the nodes of the step, shape (n, NODES_PER_STEP).
+
+    Returns:
+        The place, in (0, 1].
+    """
+
+    def at(theta: float) -> float:
+        return event(values @ lagrange_weights(np.array([theta]))[0])
+
+    return 1.0 if at(0.0) >= 0.0 else float(brentq(at, 0.0, 1.0))
 
 
 def _lobatto(n: int) -> tuple[FloatArray, FloatArray]:

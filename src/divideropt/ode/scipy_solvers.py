@@ -1,31 +1,29 @@
 """SciPy's stiff solvers behind the call of `divideropt.ode.base`."""
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from scipy.integrate import BDF, LSODA, OdeSolver, Radau
-from scipy.optimize import brentq
 
 from divideropt.ode.base import (
     NODES,
+    Event,
     FloatArray,
     Rates,
     SolverSettings,
     SolverStatus,
     Trajectory,
-    lagrange_weights,
+    crossing,
 )
 
-Event = Callable[[FloatArray], float]
-
-METHODS: Mapping[str, Any] = MappingProxyType({"LSODA": LSODA, "BDF": BDF, "Radau": Radau})
+SCIPY_METHODS: Mapping[str, Any] = MappingProxyType({"LSODA": LSODA, "BDF": BDF, "Radau": Radau})
 """The methods of `scipy.integrate.solve_ivp` for stiff systems, by its names."""
 
 
-def integrate(
+def integrate_by_scipy(
     rates: Rates,
     jacobian: Rates,
     span: tuple[float, float],
@@ -48,7 +46,7 @@ def integrate(
         The trajectory, up to the event or to where the solver gave up. It holds at least one step: if the very first
         failed, the start's state over the whole span.
     """
-    solver = METHODS[settings.method](
+    solver = SCIPY_METHODS[settings.method](
         rates,
         span[0],
         start,
@@ -77,7 +75,7 @@ def _advance(
         values.append(dense(left + width * NODES))
         edges.append(solver.t)
         if event is not None and event(solver.y) > 0.0:
-            width *= _crossing(event, values[-1])
+            width *= crossing(event, values[-1])
             values[-1], edges[-1] = dense(left + width * NODES), left + width
             status, message = SolverStatus.EVENT, ""
             break
@@ -101,12 +99,3 @@ def _step(solver: OdeSolver) -> str | None:
     if not np.isfinite(solver.y).all():  # LSODA would go on
         return "the state is no longer a number"
     return None
-
-
-def _crossing(event: Event, values: FloatArray) -> float:
-    """Place on a step, in (0, 1], where an event that is positive at its end has become so."""
-
-    def at(theta: float) -> float:
-        return event(values @ lagrange_weights(np.array([theta]))[0])
-
-    return 1.0 if at(0.0) >= 0.0 else float(brentq(at, 0.0, 1.0))

@@ -3,22 +3,22 @@
 States, in order: Ps, Pa1, Pa2, Pb1, Pb2, ẋ, x, PL1, PL2 [Pa, m/s, m]. Everything a design fixes comes in one
 record of `COEFFICIENTS`; the pilot stage is in it as two 3×3 matrices, folded once unless the spool is turned. The
 record's options choose between the formulations; no equation stands twice.
-
-Every compiled function that another one calls is in this file: numba's cache looks at the age of a function's own
-file only, and would go on calling the old version of one that stands elsewhere.
 """
 
 import math
 
 import numpy as np
-from numba import njit
 
 from divideropt.models.base import FloatArray
+from divideropt.ode.compiled import compiled
+from divideropt.ode.rosenbrock import RATES, SLOPES, STAGE_TIME, TIME, TIME_DIFFERENCE, advance, begin
 
 STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
 """Names of the states, in the order of a state vector."""
 
 N_STATES = len(STATES)
+
+_POSITION = STATES.index("x")
 
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
@@ -45,7 +45,7 @@ SMALLEST_VOLUME = 1e-15
 """What C.3 puts for an end chamber that has vanished [m^3]."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def rates(t, y, design):  # type: ignore[no-untyped-def]
     """Return dy/dt.
 
@@ -63,7 +63,7 @@ def rates(t, y, design):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def jacobian(t, y, design):  # type: ignore[no-untyped-def]
     """Return the matrix of derivatives of the rates by the states, shape (9, 9); arguments as in `rates`."""
     out = np.empty(N_STATES)
@@ -72,7 +72,7 @@ def jacobian(t, y, design):  # type: ignore[no-untyped-def]
     return jac
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
     """Fill rates and Jacobian.
 
@@ -240,7 +240,67 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
     jac[6, 5] = x_
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
+def run(design, first, last, limit, s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, bound, edges, values):  # type: ignore[no-untyped-def]
+    """Integrate by `divideropt.ode.rosenbrock`: the loop that supplies its right-hand side.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        first: First time [s].
+        last: Last time [s].
+        limit: Budget of steps.
+        s: With those that follow up to `u`, the arrays of a `Workspace`; `y` holds the start.
+        k: See `s`.
+        y: See `s`.
+        f0: See `s`.
+        f: See `s`.
+        jac: See `s`.
+        slope: See `s`.
+        lu: See `s`.
+        pivots: See `s`.
+        U: See `s`.
+        u: See `s`.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance a state, shape (9,).
+        bound: Where the spool's position ends the run [m]; infinity if nowhere.
+        edges: Receives the times, shape (limit + 1,).
+        values: Receives the states at the nodes of each step, shape (limit, 9, NODES_PER_STEP).
+
+    Returns:
+        How it ended, as `advance`.
+    """
+    d = design[0]
+    spare = np.zeros((N_STATES, N_STATES))
+    edges[0] = first
+    jac[:] = 0.0
+    motion(first, y, d, f0, jac)
+    begin(s, k, first, last, limit, y, f0, rtol, atol)
+    while True:
+        if d.moving != 0:
+            _time_slope(s[TIME], TIME_DIFFERENCE * (last - first), y, d, f, slope, spare)
+        wanted = RATES
+        while wanted == RATES:
+            wanted = advance(
+                s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, _POSITION, bound, edges, values
+            )
+            if wanted == RATES:
+                motion(s[STAGE_TIME], u, d, f, spare)
+        if wanted != SLOPES:
+            return wanted
+        jac[:] = 0.0
+        motion(s[TIME], y, d, f0, jac)
+
+
+@compiled
+def _time_slope(t, step, y, d, f, slope, spare):  # type: ignore[no-untyped-def]
+    """Fill ∂f/∂t by a central difference; `f` and `spare` are work."""
+    motion(t + step, y, d, slope, spare)
+    motion(t - step, y, d, f, spare)
+    for i in range(N_STATES):
+        slope[i] = (slope[i] - f[i]) / (2.0 * step)
+
+
+@compiled
 def fold_pilot(position, d):  # type: ignore[no-untyped-def]
     """Fold the pilot stage: what both grooves of a side add to supply, flow chamber and end chamber.
 
@@ -255,7 +315,7 @@ def fold_pilot(position, d):  # type: ignore[no-untyped-def]
     gather(fold_side(d.pilot, conductance, length, leakage, far, near, d.leakage_sign), d.pilot_bypass, d.pilot_2)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # type: ignore[no-untyped-def]
     """Fold the grooves of one side, whose tap lies the angle `near` from the supply and `far` from the outlet.
 
@@ -305,7 +365,7 @@ def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # 
     return rows
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def gather(rows, bypass, net):  # type: ignore[no-untyped-def]
     """Gather a side's flows into the balances of supply, flow chamber and end chamber, shape (3, 3)."""
     for i in range(3):
@@ -314,7 +374,7 @@ def gather(rows, bypass, net):  # type: ignore[no-untyped-def]
         net[2, i] = 2.0 * rows[2, i] - rows[4, i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def load_coefficients(since, d):  # type: ignore[no-untyped-def]
     """Return CdL AL √(2/ρ) of both loads, `since` seconds after their pressures began to move."""
     first = d.load_flow / math.sqrt(d.load_pressure_1 + d.load_pressure_1_rate * since)
@@ -322,7 +382,7 @@ def load_coefficients(since, d):  # type: ignore[no-untyped-def]
     return first, second
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _excess(drop, angle, loss, d):  # type: ignore[no-untyped-def]
     """Return what a loss adds to the laminar flow through a stretch of one groove (negative), and its slope.
 
@@ -334,7 +394,7 @@ def _excess(drop, angle, loss, d):  # type: ignore[no-untyped-def]
     return drop * (2.0 / (resistance + root) - laminar), 1.0 / root - laminar
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _carry(e, e_, here, there, here_, there_, gain_here, gain_there, out, jac):  # type: ignore[no-untyped-def]
     """Take a flow and its slope in both grooves from one balance to another."""
     out[here] -= 2.0 * gain_here * e
@@ -345,7 +405,7 @@ def _carry(e, e_, here, there, here_, there_, gain_here, gain_there, out, jac): 
     jac[there, there] -= 2.0 * gain_there * e_ * there_
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def groove_inlets(y, d):  # type: ignore[no-untyped-def]
     """Return Qc1i and Qc2i [m^3/s], from the supply into one groove of either side, at a state under constant inputs.
 
@@ -364,7 +424,7 @@ def groove_inlets(y, d):  # type: ignore[no-untyped-def]
     return q1, q2
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def signed_root(drops, law):  # type: ignore[no-untyped-def]
     """Return the signed square root of pressure drops [Pa] as the orifices have it, shape (n,) as given."""
     out = np.empty_like(drops)
@@ -373,13 +433,13 @@ def signed_root(drops, law):  # type: ignore[no-untyped-def]
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _floored(p, floor):  # type: ignore[no-untyped-def]
     """Return what a flow law sees of a pressure, by a `PressureFloor`, and its slope."""
     return (0.0, 0.0) if p < 0.0 and floor != 2 else (p, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _root(drop, law):  # type: ignore[no-untyped-def]
     """Return the signed square root of a drop and its slope, by an `OrificeLaw`."""
     size = abs(drop)
@@ -393,7 +453,7 @@ def _root(drop, law):  # type: ignore[no-untyped-def]
     return math.copysign(math.sqrt(size), drop), 0.5 / math.sqrt(max(size, STEEPEST))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _port(e, d):  # type: ignore[no-untyped-def]
     """Return area, its slope by e, chord width, its slope by e: (2.15), (2.18), with `e` = d0 ∓ x."""
     rv = d.port_radius
@@ -409,7 +469,7 @@ def _port(e, d):  # type: ignore[no-untyped-def]
     return area, 0.0, d.rim_holes * 2.0 * half, 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _stop_force(x, xdot, d):  # type: ignore[no-untyped-def]
     """Return the end stop's force on the spool [N] and its slopes by x and ẋ."""
     depth = abs(x) - d.stop_position

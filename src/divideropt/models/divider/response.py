@@ -17,10 +17,19 @@ from divideropt.models.divider.equilibrium import (
 )
 from divideropt.models.divider.formulations import Formulation, Stop
 from divideropt.models.divider.geometry import Geometry
-from divideropt.models.divider.kernels import STATES, jacobian, load_coefficients, rates, signed_root, zero_state
+from divideropt.models.divider.kernels import (
+    STATES,
+    jacobian,
+    load_coefficients,
+    rates,
+    run,
+    signed_root,
+    zero_state,
+)
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.scenario import Scenario, Span
-from divideropt.ode import Event, SolverSettings, SolverStatus, Trajectory, integrate
+from divideropt.ode import ROSENBROCK, Event, SolverSettings, SolverStatus, Trajectory, integrate
+from divideropt.ode.rosenbrock import Workspace
 
 RESCUER = "Radau"
 """LSODA and BDF take tiny steps where a fast mode is hardly damped, since their formulas of higher order would blow
@@ -197,13 +206,30 @@ def _run(
 ) -> Trajectory:
     """Integrate; where a multistep method's budget ends, let an implicit Runge-Kutta method try."""
 
+    if settings.method == ROSENBROCK:
+        return _run_compiled(design, span, start, settings, event)
+
     def attempt(with_settings: SolverSettings) -> Trajectory:
         return integrate(
             lambda t, y: rates(t, y, design), lambda t, y: jacobian(t, y, design), span, start, with_settings, event
         )
 
-    run = attempt(settings)
-    if run.status is not SolverStatus.STEP_BUDGET or settings.method == RESCUER:
-        return run
+    first = attempt(settings)
+    if first.status is not SolverStatus.STEP_BUDGET or settings.method == RESCUER:
+        return first
     rescued = attempt(replace(settings, method=RESCUER, max_steps=min(settings.max_steps, RESCUE_STEPS)))
-    return rescued if rescued.status in (SolverStatus.FINISHED, SolverStatus.EVENT) else run
+    return rescued if rescued.status in (SolverStatus.FINISHED, SolverStatus.EVENT) else first
+
+
+def _run_compiled(
+    design: Design, span: tuple[float, float], start: FloatArray, settings: SolverSettings, event: Event | None
+) -> Trajectory:
+    """Integrate by the Rosenbrock method, its loop and the right-hand side compiled together."""
+    work = Workspace(len(start), settings.max_steps)
+    work.state[:] = start
+    bound = math.inf if event is None else float(design[0].stop_position)
+    ending = run(
+        design, *span, settings.max_steps, work.s, work.k, work.state, work.f0, work.f, work.jac, work.slope,
+        work.lu, work.pivots, work.U, work.u, settings.rtol, np.array(settings.atol), bound, work.edges, work.values,
+    )  # fmt: skip
+    return work.trajectory(ending, start, event)
