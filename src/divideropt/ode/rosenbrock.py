@@ -26,6 +26,7 @@ from divideropt.ode.base import (
     lagrange_weights,
 )
 from divideropt.ode.compiled import compiled
+from divideropt.ode.linear import factorise, solve
 
 STAGES = 8
 
@@ -155,13 +156,17 @@ def advance(s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, watch, bou
     while True:
         stage, h = k[STAGE], s[STEP]
         if stage == 0:
-            _factorise(jac, 1.0 / (GAMMA * h), lu, pivots)
+            for i in range(n):
+                for j in range(n):
+                    lu[i, j] = -jac[i, j]
+                lu[i, i] += 1.0 / (GAMMA * h)
+            factorise(lu, pivots)
         for i in range(n):
             right = (f0[i] if stage == 0 else f[i]) + h * _SLOPES[stage] * slope[i]
             for j in range(stage):
                 right += _C[stage, j] / h * U[j, i]
             U[stage, i] = right
-        _solve(lu, pivots, U[stage])
+        solve(lu, pivots, U[stage])
         if stage < STAGES - 1:
             stage += 1
             for i in range(n):
@@ -222,50 +227,6 @@ def _keep(y, u, U, nodes):  # type: ignore[no-untyped-def]
             rest = 1.0 - theta
             nodes[i, m] = rest * first + theta * (last + rest * (k0 + theta * (k1 + theta * k2)))
         y[i] = last
-
-
-@compiled
-def _factorise(jac, diagonal, lu, pivots):  # type: ignore[no-untyped-def]
-    """Factorise `diagonal`·I - J with partial pivoting, in place in `lu`."""
-    n = pivots.size
-    for i in range(n):
-        for j in range(n):
-            lu[i, j] = -jac[i, j]
-        lu[i, i] += diagonal
-    for j in range(n):
-        best = j
-        for i in range(j + 1, n):
-            if abs(lu[i, j]) > abs(lu[best, j]):
-                best = i
-        pivots[j] = best
-        if best != j:
-            for m in range(n):
-                lu[j, m], lu[best, m] = lu[best, m], lu[j, m]
-        for i in range(j + 1, n):
-            if lu[i, j] != 0.0:
-                factor = lu[i, j] / lu[j, j]
-                lu[i, j] = factor
-                for m in range(j + 1, n):
-                    lu[i, m] -= factor * lu[j, m]
-
-
-@compiled
-def _solve(lu, pivots, b):  # type: ignore[no-untyped-def]
-    """Solve with the factors, in place in `b`."""
-    n = pivots.size
-    for j in range(n):
-        best = pivots[j]
-        if best != j:
-            b[j], b[best] = b[best], b[j]
-    for j in range(n):
-        if b[j] != 0.0:
-            for i in range(j + 1, n):
-                b[i] -= lu[i, j] * b[j]
-    for j in range(n - 1, -1, -1):
-        total = b[j]
-        for i in range(j + 1, n):
-            total -= lu[j, i] * b[i]
-        b[j] = total / lu[j, j]
 
 
 def integrate_by_rosenbrock(

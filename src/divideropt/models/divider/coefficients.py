@@ -8,7 +8,7 @@ from divideropt.models.divider.formulations import Formulation
 from divideropt.models.divider.geometry import Geometry, derive_geometry
 from divideropt.models.divider.kernels import fold_pilot
 from divideropt.models.divider.pilot import ENTRANCE_SHARE, Groove, leakage_sign
-from divideropt.models.divider.record import Design, blank_coefficients
+from divideropt.models.divider.record import Design, record_of
 from divideropt.models.divider.scenario import Inputs, Span, load_areas
 
 
@@ -56,74 +56,89 @@ class Valve:
         Returns:
             `COEFFICIENTS`, shape (1,).
         """
-        design = blank_coefficients()
-        self._fill_valve(design)
-        self._fill_pilot(design)
-        self._fill_options(design)
-        self._fill_inputs(design, span, sized_for)
-        d = design[0]
-        fold_pilot(d.spool_position, d)
+        values = self._valve() | self._pilot() | self._options() | self._inputs(span, sized_for)
+        design = record_of(values)
+        fold_pilot(design[0].spool_position, design[0])
         return design
 
-    def _fill_valve(self, design: Design) -> None:
-        d, p, g = design[0], self.parameters, self.geometry
+    def _valve(self) -> dict[str, float]:
+        p, g = self.parameters, self.geometry
         root = math.sqrt(2 / p["density"])
-        d.source_gain = p["bulk_modulus"] / p["source_volume"]
-        d.chamber_gain = p["bulk_modulus"] / g.chamber_volume
-        d.load_gain = p["bulk_modulus"] / p["load_volume"]
-        d.bulk_modulus = p["bulk_modulus"]
-        d.end_volume = g.end_volume
-        d.end_area = g.end_area
-        d.mass = g.mass
-        d.viscous_friction = g.viscous_friction
-        d.coulomb_friction = p["coulomb_friction"]
-        d.fixed_1 = p["fixed_discharge"] * g.fixed_area_1 * root
-        d.fixed_2 = p["fixed_discharge"] * g.fixed_area_2 * root
-        d.variable = p["variable_discharge"] * root
         length = p["damping_length"] if self.formulation.transient_force else 0.0
-        d.transient = length * p["variable_discharge"] * math.sqrt(2 * p["density"])
-        d.port_radius = g.port_radius
-        d.port_offset = g.port_offset
-        d.stop_position = g.stop_position
-        d.rim_thickness = p["rim_thickness"]
-        d.seal_leakage = g.seal_leakage if self.formulation.end_seals else 0.0
+        return {
+            "source_gain": p["bulk_modulus"] / p["source_volume"],
+            "chamber_gain": p["bulk_modulus"] / g.chamber_volume,
+            "load_gain": p["bulk_modulus"] / p["load_volume"],
+            "bulk_modulus": p["bulk_modulus"],
+            "end_volume": g.end_volume,
+            "end_area": g.end_area,
+            "mass": g.mass,
+            "viscous_friction": g.viscous_friction,
+            "coulomb_friction": p["coulomb_friction"],
+            "fixed_1": p["fixed_discharge"] * g.fixed_area_1 * root,
+            "fixed_2": p["fixed_discharge"] * g.fixed_area_2 * root,
+            "variable": p["variable_discharge"] * root,
+            "transient": length * p["variable_discharge"] * math.sqrt(2 * p["density"]),
+            "port_radius": g.port_radius,
+            "port_offset": g.port_offset,
+            "stop_position": g.stop_position,
+            "rim_thickness": p["rim_thickness"],
+            "seal_leakage": g.seal_leakage if self.formulation.end_seals else 0.0,
+        }
 
-    def _fill_pilot(self, design: Design) -> None:
-        d, groove = design[0], self.groove
-        d.groove_conductance = groove.conductance
-        d.groove_length = groove.length
-        d.groove_leakage = groove.leakage
-        d.groove_angle = groove.angle
+    def _pilot(self) -> dict[str, float]:
+        groove, loss = self.groove, 0.0
         if self.formulation.groove_loss:
             loss = self.parameters["groove_loss_factor"] * self.parameters["density"] / (2 * groove.area**2)
-            d.entrance_loss, d.exit_loss = ENTRANCE_SHARE * loss, (1 - ENTRANCE_SHARE) * loss
+        return {
+            "groove_conductance": groove.conductance,
+            "groove_length": groove.length,
+            "groove_leakage": groove.leakage,
+            "groove_angle": groove.angle,
+            "entrance_loss": ENTRANCE_SHARE * loss,
+            "exit_loss": (1 - ENTRANCE_SHARE) * loss,
+        }
 
-    def _fill_options(self, design: Design) -> None:
-        d, f = design[0], self.formulation
-        d.pilot = f.pilot
-        d.leakage_sign = leakage_sign(f)
-        d.pilot_bypass = f.pilot_bypass
-        d.arc_holes, d.chord_holes, d.rim_holes = f.arc_holes, f.chord_holes, f.rim_holes
-        d.orifice_law = f.orifice_law
-        d.port_range = f.port_range
-        d.stop = f.stop
-        d.pressure_floor = f.pressure_floor
+    def _options(self) -> dict[str, float]:
+        f = self.formulation
+        return {
+            "pilot": f.pilot,
+            "leakage_sign": leakage_sign(f),
+            "pilot_bypass": f.pilot_bypass,
+            "arc_holes": f.arc_holes,
+            "chord_holes": f.chord_holes,
+            "rim_holes": f.rim_holes,
+            "orifice_law": f.orifice_law,
+            "port_range": f.port_range,
+            "stop": f.stop,
+            "pressure_floor": f.pressure_floor,
+        }
 
-    def _fill_inputs(self, design: Design, span: Span, sized_for: float) -> None:
-        d, p, inputs = design[0], self.parameters, span.inputs
-        d.source_flow = inputs.source_flow
-        d.spool_position = inputs.spool_position
-        d.load_flow = sized_for / 2
+    def _inputs(self, span: Span, sized_for: float) -> dict[str, float]:
+        p, inputs = self.parameters, span.inputs
         areas = load_areas(p, inputs.load_pressures, sized_for)
-        d.load_1, d.load_2 = (p["load_discharge"] * area * math.sqrt(2 / p["density"]) for area in areas)
-        if not span.moving:
-            return
-        duration, final = span.end - span.begin, span.final_inputs
-        d.moving, d.begin = 1, span.begin
-        d.source_flow_rate = (final.source_flow - inputs.source_flow) / duration
-        d.spool_position_rate = (final.spool_position - inputs.spool_position) / duration
-        d.load_pressure_1, d.load_pressure_2 = inputs.load_pressures
-        d.load_pressure_1_rate, d.load_pressure_2_rate = (
-            (after - before) / duration
-            for before, after in zip(inputs.load_pressures, final.load_pressures, strict=True)
-        )
+        first, second = (p["load_discharge"] * area * math.sqrt(2 / p["density"]) for area in areas)
+        values = {
+            "source_flow": inputs.source_flow,
+            "spool_position": inputs.spool_position,
+            "load_flow": sized_for / 2,
+            "load_1": first,
+            "load_2": second,
+        }
+        return values | _motion(span) if span.moving else values
+
+
+def _motion(span: Span) -> dict[str, float]:
+    """How the inputs move over a span."""
+    duration, before, after = span.end - span.begin, span.inputs, span.final_inputs
+    rates = [(b - a) / duration for a, b in zip(before.load_pressures, after.load_pressures, strict=True)]
+    return {
+        "moving": 1,
+        "begin": span.begin,
+        "source_flow_rate": (after.source_flow - before.source_flow) / duration,
+        "spool_position_rate": (after.spool_position - before.spool_position) / duration,
+        "load_pressure_1": before.load_pressures[0],
+        "load_pressure_2": before.load_pressures[1],
+        "load_pressure_1_rate": rates[0],
+        "load_pressure_2_rate": rates[1],
+    }

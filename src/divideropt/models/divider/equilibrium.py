@@ -16,12 +16,15 @@ from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import PortRange, Stop
-from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
+from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, newton, rates, residual_scales
 from divideropt.models.divider.record import Design
 from divideropt.ode import SolverSettings, integrate
 
 TOLERANCE = 1e-13
 """Residual at which Newton stops: flows over the source flow, forces over `FORCE_SCALE` times the end area."""
+
+LOOSEST = 1e3
+"""Where no step improves it any more, a residual of so many times that will do."""
 
 ITERATIONS = 60
 """Budget of Newton iterations; from the end of a response two or three suffice."""
@@ -209,32 +212,10 @@ def _newton(
     y = start.copy()
     y[_XDOT] = 0.0
     scale = _residual_scales(design, y)[balances]
-    reach = _reach(design)
-    residual = rates(0.0, y, design)[balances] / scale
-    size = float(np.abs(residual).max())
-    for _ in range(ITERATIONS):
-        if not np.isfinite(size):
-            return None
-        if size <= TOLERANCE:
-            return Equilibrium(y, size, "newton")
-        matrix = jacobian(0.0, y, design)[np.ix_(balances, unknowns)] / scale[:, None]
-        step = _solve(matrix, -residual)
-        if step is None:
-            return None
-        improved = False
-        for halving in range(HALVINGS):
-            trial = y.copy()
-            trial[unknowns] += step / 2**halving
-            trial[_PRESSURES] = np.maximum(trial[_PRESSURES], 0.0)
-            trial[_X] = min(max(trial[_X], -reach), reach)
-            trial_residual = rates(0.0, trial, design)[balances] / scale
-            trial_size = float(np.abs(trial_residual).max())
-            if trial_size < size:
-                y, residual, size, improved = trial, trial_residual, trial_size, True
-                break
-        if not improved:
-            return Equilibrium(y, size, "newton") if size <= 1e3 * TOLERANCE else None
-    return None
+    size = newton(
+        design, y, unknowns, balances, scale, _reach(design), TOLERANCE, LOOSEST * TOLERANCE, ITERATIONS, HALVINGS
+    )
+    return None if np.isnan(size) else Equilibrium(y, size, "newton")
 
 
 def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
@@ -313,22 +294,7 @@ def _reach(design: Design) -> float:
 
 def _residual_scales(design: Design, y: FloatArray) -> FloatArray:
     """What divides each rate: that of a pressure as if the source flow filled its volume."""
-    d = design[0]
-    flow = d.source_flow
-    end_1 = d.bulk_modulus / (d.end_volume + d.end_area * y[_X])
-    end_2 = d.bulk_modulus / (d.end_volume - d.end_area * y[_X])
-    gains = [d.source_gain, d.chamber_gain, d.chamber_gain, end_1, end_2]
-    force = FORCE_SCALE * d.end_area / d.mass
-    return np.array([*(flow * g for g in gains), force, 1.0, flow * d.load_gain, flow * d.load_gain])
-
-
-def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
-    """Solve a linear system, or None where it is singular."""
-    try:
-        step: FloatArray = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        return None
-    return step if np.isfinite(step).all() else None
+    return np.asarray(residual_scales(design, y, FORCE_SCALE))
 
 
 _SEARCHES: Mapping[str, Callable[[Design, FloatArray], Equilibrium | None]] = {

@@ -11,6 +11,7 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.ode.compiled import compiled
+from divideropt.ode.linear import factorise, solve
 from divideropt.ode.rosenbrock import RATES, SLOPES, STAGE_TIME, TIME, TIME_DIFFERENCE, advance, begin
 
 STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
@@ -18,7 +19,7 @@ STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
 
 N_STATES = len(STATES)
 
-_POSITION = STATES.index("x")
+_VELOCITY, _POSITION = STATES.index("xdot"), STATES.index("x")
 
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
@@ -241,6 +242,101 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iterations, halvings):  # type: ignore[no-untyped-def]
+    """Solve some balances for some states by damped Newton steps.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        y: The start, shape (9,); receives the solution. The spool's velocity stays as it is.
+        unknowns: Indices of the states to be found, shape (m,).
+        balances: Indices of the rates that must vanish, shape (m,).
+        scale: What divides those, shape (m,).
+        reach: Largest distance of the spool from the centre [m].
+        tolerance: Scaled residual at which it stops.
+        loosest: Scaled residual that will do where no step improves it.
+        iterations: Budget of steps.
+        halvings: How often a step is halved before it is taken as lost.
+
+    Returns:
+        The largest scaled residual, or NaN where it is not small.
+    """
+    m = unknowns.size
+    d = design[0]
+    out, jac, spare = np.empty(N_STATES), np.zeros((N_STATES, N_STATES)), np.zeros((N_STATES, N_STATES))
+    a, pivots, step, trial = np.empty((m, m)), np.empty(m, np.int64), np.empty(m), np.empty(N_STATES)
+    motion(0.0, y, d, out, jac)
+    size = _largest(out, balances, scale)
+    for _ in range(iterations):
+        if not size < math.inf:
+            return math.nan
+        if size <= tolerance:
+            return size
+        for i in range(m):
+            for j in range(m):
+                a[i, j] = jac[balances[i], unknowns[j]] / scale[i]
+            step[i] = -out[balances[i]] / scale[i]
+        if not factorise(a, pivots):
+            return math.nan
+        solve(a, pivots, step)
+        improved = False
+        share = 1.0
+        for _ in range(halvings):
+            trial[:] = y
+            for i in range(m):
+                trial[unknowns[i]] += share * step[i]
+            for i in range(N_STATES):
+                if i != _VELOCITY and i != _POSITION:
+                    trial[i] = max(trial[i], 0.0)
+            trial[_POSITION] = min(max(trial[_POSITION], -reach), reach)
+            motion(0.0, trial, d, out, spare)
+            new = _largest(out, balances, scale)
+            if new < size:
+                improved = True
+                break
+            share *= 0.5
+        if not improved:
+            return size if size <= loosest else math.nan
+        y[:] = trial
+        size = new
+        jac[:] = 0.0
+        motion(0.0, y, d, out, jac)
+    return math.nan
+
+
+@compiled
+def _largest(out, balances, scale):  # type: ignore[no-untyped-def]
+    """Return the largest scaled residual; NaN where one is."""
+    size = 0.0
+    for i in range(balances.size):
+        value = abs(out[balances[i]]) / scale[i]
+        if math.isnan(value):
+            return value
+        size = max(size, value)
+    return size
+
+
+@compiled
+def residual_scales(design, y, pressure):  # type: ignore[no-untyped-def]
+    """Return what divides each rate, shape (9,): that of a pressure as if the source flow filled its volume.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        y: State, shape (9,).
+        pressure: On the end area it makes the force that divides a force [Pa].
+    """
+    d = design[0]
+    flow = d.source_flow
+    scale = np.ones(N_STATES)
+    scale[0] = flow * d.source_gain
+    scale[1] = scale[2] = flow * d.chamber_gain
+    scale[3] = flow * d.bulk_modulus / (d.end_volume + d.end_area * y[_POSITION])
+    scale[4] = flow * d.bulk_modulus / (d.end_volume - d.end_area * y[_POSITION])
+    scale[_VELOCITY] = pressure * d.end_area / d.mass
+    scale[7] = scale[8] = flow * d.load_gain
+    return scale
+
+
+@compiled
 def run(design, first, last, limit, s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, bound, edges, values):  # type: ignore[no-untyped-def]
     """Integrate by `divideropt.ode.rosenbrock`: the loop that supplies its right-hand side.
 
@@ -422,6 +518,22 @@ def groove_inlets(y, d):  # type: ignore[no-untyped-def]
         q1 += _excess(y[0] - y[3], near, d.entrance_loss, d)[0]
         q2 += _excess(y[0] - y[4], far, d.entrance_loss, d)[0]
     return q1, q2
+
+
+@compiled
+def load_flows(t, first, second, d):  # type: ignore[no-untyped-def]
+    """Return QL1 and QL2 [m^3/s] through the load orifices, (3.3), (3.4).
+
+    Args:
+        t: Time [s]; it matters only where the inputs move.
+        first: PL1 [Pa].
+        second: PL2 [Pa].
+        d: A record of `COEFFICIENTS`.
+    """
+    load_1, load_2 = d.load_1, d.load_2
+    if d.moving != 0:
+        load_1, load_2 = load_coefficients(t - d.begin, d)
+    return load_1 * _root(max(first, 0.0), d.orifice_law)[0], load_2 * _root(max(second, 0.0), d.orifice_law)[0]
 
 
 @compiled

@@ -1,5 +1,7 @@
 """The record that the compiled equations read: everything one design and the inputs of one phase fix."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -66,6 +68,19 @@ Design = NDArray[np.record]
 """`COEFFICIENTS` of one design, shape (1,)."""
 
 
-def blank_coefficients() -> Design:
-    """Return `COEFFICIENTS` of one design, all zero, shape (1,)."""
-    return np.zeros(1, dtype=COEFFICIENTS)
+def record_of(values: Mapping[str, float]) -> Design:
+    """Make a record.
+
+    Args:
+        values: Of the fields by name; those that are not given are 0.
+
+    Returns:
+        `COEFFICIENTS`, shape (1,).
+    """
+    blank = [np.zeros(shape) if shape else 0 for shape in _SHAPES]
+    row = tuple(values.get(name, empty) for name, empty in zip(_NAMES, blank, strict=True))
+    return np.array([row], dtype=COEFFICIENTS)
+
+
+_NAMES = COEFFICIENTS.names or ()
+_SHAPES = [COEFFICIENTS[name].shape for name in _NAMES]

@@ -4,15 +4,20 @@ Integrals are Gauss–Lobatto sums over the solver's own steps, and crossings ar
 nothing here depends on a grid of samples.
 """
 
-from collections.abc import Callable, Sequence
-from itertools import pairwise
+import math
+from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import brentq
 
 from divideropt.models.base import FloatArray
+from divideropt.models.divider.kernels import STATES, load_flows
 from divideropt.models.divider.response import Phase
-from divideropt.ode.base import NODE_WEIGHTS, NODES, Trajectory, lagrange_weights
+from divideropt.ode.base import NODE_WEIGHTS, NODES, lagrange_weights
+from divideropt.ode.compiled import compiled
+from divideropt.ode.interpolate import interpolate
+
+BISECTIONS = 60
+"""Halvings of the distance between two nodes: to the last bit."""
 
 _FINE = lagrange_weights(np.linspace(0.0, 1.0, 33)).T
 
@@ -38,91 +43,143 @@ class FlowError:
         runs = [(phase, phase.trajectory) for phase in phases if phase.trajectory is not None]
         if not runs or len(runs) < len(phases):
             raise ValueError("a phase that took no time, or was not reached, has no transient")
-        self._phases = [phase for phase, run in runs for _ in range(len(run.values))]
+        self._designs = np.concatenate([phase.design for phase, _ in runs])
+        self._which = np.repeat(np.arange(len(runs)), [len(run.values) for _, run in runs])
         self._edges = np.concatenate([runs[0][1].edges[:1], *(run.edges[1:] for _, run in runs)])
-        self._values = np.concatenate([run.values for _, run in runs])
-        self._flows = np.concatenate([_flows_at_nodes(phase, run) for phase, run in runs])
+        pressures = [np.ascontiguousarray(run.values[:, _LOADS]) for _, run in runs]
+        self._pressures = np.concatenate(pressures)
+        self._flows = node_flows(self._edges, self._pressures, self._designs, self._which)
         self.begin = float(self._edges[0])
 
     def settled_at(self, final: float, band: float) -> float | None:
         """Time [s] from which QL1 stays within `band`·`final` of `final`; None if it ends outside."""
-        outside = np.abs(self._flows[..., 0] - final) > band * final
-        steps, nodes = np.nonzero(outside)
-        if len(steps) == 0:
-            return self.begin
-        step, node = int(steps[-1]), int(nodes[-1])
-        if node == len(NODES) - 1:
-            return None if step == len(outside) - 1 else float(self._edges[step + 1])
-
-        def beyond(theta: float) -> float:
-            return abs(float(self._flow(step, np.array([theta]))[0, 0]) - final) - band * final
-
-        return float(self._time(step, np.array(_root(beyond, NODES[node], NODES[node + 1]))))
+        found = settled(self._edges, self._pressures, self._flows, self._designs, self._which, final, band)
+        return None if np.isnan(found) else float(found)
 
     def integrals(self, reference: float, until: float) -> tuple[float, float]:
         """Integrate QL1 - QL2 less a reference, and its magnitude, from the event on.
 
         Args:
             reference: What to take off [m^3/s].
-            until: Upper limit [s], within the phase.
+            until: Upper limit [s], within the phases.
 
         Returns:
             The two integrals [m^3].
         """
-        widths = np.diff(self._edges)
-        whole = int(np.searchsorted(self._edges, until, side="right")) - 1
-        error = self._flows[:whole, :, 0] - self._flows[:whole, :, 1] - reference
-        sums = error @ NODE_WEIGHTS * widths[:whole]
-        one_sided = (error.min(axis=1) >= 0.0) | (error.max(axis=1) <= 0.0)
-        magnitudes = np.abs(sums)
-        for step in np.flatnonzero(~one_sided):
-            magnitudes[step] = self._magnitude(int(step), 1.0, reference)
-        signed, magnitude = float(sums.sum()), float(magnitudes.sum())
-        if whole < len(widths) and until > self._edges[whole]:
-            part = float((until - self._edges[whole]) / widths[whole])
-            signed += self._between(whole, 0.0, part, reference)
-            magnitude += self._magnitude(whole, part, reference)
-        return signed, magnitude
-
-    def _magnitude(self, step: int, end: float, reference: float) -> float:
-        """Integrate the magnitude over [0, end] of a step, piece by piece between its zeros."""
-
-        def error(theta: float) -> float:
-            flows = self._flow(step, np.array([theta]))[0]
-            return float(flows[0] - flows[1] - reference)
-
-        places = NODES * end
-        signs = [error(float(theta)) for theta in places]
-        cuts = [0.0]
-        for (left, at_left), (right, at_right) in pairwise(zip(places, signs, strict=True)):
-            if at_left * at_right < 0.0:
-                cuts.append(_root(error, float(left), float(right)))
-        cuts.append(end)
-        return sum(abs(self._between(step, a, b, reference)) for a, b in pairwise(cuts))
-
-    def _between(self, step: int, left: float, right: float, reference: float) -> float:
-        """Integrate the signed error over a part of a step."""
-        flows = self._flow(step, left + (right - left) * NODES)
-        error = flows[:, 0] - flows[:, 1] - reference
-        return float(error @ NODE_WEIGHTS * (right - left) * (self._edges[step + 1] - self._edges[step]))
-
-    def _flow(self, step: int, theta: FloatArray) -> FloatArray:
-        """Load flows at places on a step, shape (m, 2)."""
-        states = lagrange_weights(theta) @ self._values[step].T
-        return self._phases[step].load_flows(states, self._time(step, theta))
-
-    def _time(self, step: int, theta: FloatArray) -> FloatArray:
-        return np.asarray(self._edges[step] + theta * (self._edges[step + 1] - self._edges[step]))
+        return integrals(
+            self._edges, self._pressures, self._flows, self._designs, self._which, reference, until
+        )  # type: ignore[no-any-return]
 
 
-def _flows_at_nodes(phase: Phase, run: Trajectory) -> FloatArray:
-    """Load flows at the nodes of every step of a phase, shape (k, NODES_PER_STEP, 2)."""
-    times = run.edges[:-1, None] + np.diff(run.edges)[:, None] * NODES
-    return phase.load_flows(np.swapaxes(run.values, 1, 2), times)
+_LOADS = slice(STATES.index("PL1"), STATES.index("PL2") + 1)
 
 
-def _root(function: Callable[[float], float], left: float, right: float) -> float:
-    """Root between two places of different sign, or the right one where rounding hides the change."""
-    if function(left) * function(right) > 0.0:
-        return right
-    return float(brentq(function, left, right, xtol=1e-14, rtol=1e-13))
+@compiled
+def node_flows(edges, pressures, designs, which):  # type: ignore[no-untyped-def]
+    """Return the load flows at the nodes of every step [m^3/s], shape (k, 2, NODES_PER_STEP).
+
+    Args:
+        edges: Times of the steps, shape (k + 1,).
+        pressures: PL1 and PL2 at the nodes, shape (k, 2, NODES_PER_STEP).
+        designs: The records of the phases, shape (p,).
+        which: Phase of each step, shape (k,).
+    """
+    flows = np.empty_like(pressures)
+    for i in range(which.size):
+        width = edges[i + 1] - edges[i]
+        for m in range(NODES.size):
+            time = edges[i] + NODES[m] * width
+            flows[i, 0, m], flows[i, 1, m] = load_flows(
+                time, pressures[i, 0, m], pressures[i, 1, m], designs[which[i]]
+            )
+    return flows
+
+
+@compiled
+def settled(edges, pressures, flows, designs, which, final, band):  # type: ignore[no-untyped-def]
+    """Return from when on QL1 stays within `band`·`final` of `final` [s]; NaN if it ends outside."""
+    last = NODES.size - 1
+    for i in range(which.size - 1, -1, -1):
+        for m in range(last, -1, -1):
+            if not abs(flows[i, 0, m] - final) > band * final:
+                continue
+            if m == last:
+                return math.nan if i == which.size - 1 else edges[i + 1]
+            low, high = NODES[m], NODES[m + 1]
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (low + high)
+                flow = _flows_at(i, middle, edges, pressures, designs, which)[0]
+                if abs(flow - final) > band * final:
+                    low = middle
+                else:
+                    high = middle
+            return edges[i] + high * (edges[i + 1] - edges[i])
+    return edges[0]
+
+
+@compiled
+def integrals(edges, pressures, flows, designs, which, reference, until):  # type: ignore[no-untyped-def]
+    """Return the integrals of QL1 - QL2 less a reference, and of its magnitude, up to a time [m^3]."""
+    signed, magnitude = 0.0, 0.0
+    for i in range(which.size):
+        width = edges[i + 1] - edges[i]
+        if edges[i] >= until:
+            break
+        end = min((until - edges[i]) / width, 1.0)
+        low, high, total = math.inf, -math.inf, 0.0
+        for m in range(NODES.size):
+            error = flows[i, 0, m] - flows[i, 1, m] - reference
+            low, high, total = min(low, error), max(high, error), total + error * NODE_WEIGHTS[m]
+        if end == 1.0 and (low >= 0.0 or high <= 0.0):
+            signed += total * width
+            magnitude += abs(total) * width
+            continue
+        signed += _piece(i, 0.0, end, reference, edges, pressures, designs, which)
+        magnitude += _pieces(i, end, reference, edges, pressures, designs, which)
+    return signed, magnitude
+
+
+@compiled
+def _pieces(i, end, reference, edges, pressures, designs, which):  # type: ignore[no-untyped-def]
+    """Integrate the magnitude over [0, end] of a step, piece by piece between its zeros."""
+    total, cut = 0.0, 0.0
+    place, here = 0.0, _error_at(i, 0.0, reference, edges, pressures, designs, which)
+    for m in range(1, NODES.size):
+        after = NODES[m] * end
+        there = _error_at(i, after, reference, edges, pressures, designs, which)
+        if here * there < 0.0:
+            low, high = place, after
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (low + high)
+                if _error_at(i, middle, reference, edges, pressures, designs, which) * here > 0.0:
+                    low = middle
+                else:
+                    high = middle
+            total += abs(_piece(i, cut, high, reference, edges, pressures, designs, which))
+            cut = high
+        place, here = after, there
+    return total + abs(_piece(i, cut, end, reference, edges, pressures, designs, which))
+
+
+@compiled
+def _piece(i, left, right, reference, edges, pressures, designs, which):  # type: ignore[no-untyped-def]
+    """Integrate the signed error over a part of a step."""
+    total = 0.0
+    for m in range(NODES.size):
+        theta = left + (right - left) * NODES[m]
+        total += NODE_WEIGHTS[m] * _error_at(i, theta, reference, edges, pressures, designs, which)
+    return total * (right - left) * (edges[i + 1] - edges[i])
+
+
+@compiled
+def _error_at(i, theta, reference, edges, pressures, designs, which):  # type: ignore[no-untyped-def]
+    flows = _flows_at(i, theta, edges, pressures, designs, which)
+    return flows[0] - flows[1] - reference
+
+
+@compiled
+def _flows_at(i, theta, edges, pressures, designs, which):  # type: ignore[no-untyped-def]
+    """Load flows at a place on a step, from the pressures' polynomials there."""
+    time = edges[i] + theta * (edges[i + 1] - edges[i])
+    first, second = interpolate(theta, pressures[i, 0]), interpolate(theta, pressures[i, 1])
+    return load_flows(time, first, second, designs[which[i]])
