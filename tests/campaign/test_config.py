@@ -75,7 +75,7 @@ def test_the_default_model_is_the_standard_test():
     )
     assert scenario.events == (load_step(1, 15e6),)
     assert (scenario.settled, scenario.end_time, scenario.accumulation_time) == (True, 1.0, 0.2)
-    assert model.solver.to_settings() == SolverSettings("LSODA", 1e-4, default_atol(1e-4), DEFAULT_MAX_STEPS)
+    assert model.solver.to_settings() == SolverSettings("rosenbrock", 1e-4, default_atol(1e-4), DEFAULT_MAX_STEPS)
     assert model.formulation == "conservative"
     assert model.base_parameters() == parameter_set("thesis_base")
 
@@ -188,7 +188,7 @@ MISTAKES = {
     "true load": (("start: settled", "step: {load: true}"), [(4, 27, "true is not a whole number")]),
     "unknown solver": (
         ("kind: divider", "kind: divider\n  solver: {method: rosenbrock}"),
-        [(4, 20, "use one of LSODA, BDF, Radau")],
+        [(4, 20, "use one of rosenbrock, LSODA, BDF, Radau")],
     ),
     "loose tolerance": (("kind: divider", "kind: divider\n  solver: {rtol: 1}"), [(4, 18, "at most 0.1")]),
     "tolerance false": (

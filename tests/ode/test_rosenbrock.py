@@ -1,10 +1,12 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from divideropt.ode import SolverSettings, SolverStatus, integrate
+from divideropt.ode import rosenbrock as method
 from divideropt.ode.rosenbrock import GAMMA, STAGES, integrate_by_rosenbrock
 
 
@@ -14,8 +16,6 @@ def settings(rtol: float, scale=(1.0,), max_steps: int = 100_000) -> SolverSetti
 
 def fixed_step_error(steps: int, theta: float = 1.0) -> float:
     """Error at a place of the last of so many equal steps, on y' = -2 t y², y(0) = 1, of which y = 1/(1 + t²)."""
-    from divideropt.ode import rosenbrock as method
-
     h, t, y = 1.0 / steps, 0.0, np.array([1.0])
     work = method.Workspace(1, 1)
     for _ in range(steps):
@@ -41,7 +41,7 @@ def fixed_step_error(steps: int, theta: float = 1.0) -> float:
 @pytest.mark.parametrize(("theta", "order"), [(1.0, 5), (0.5, 4)])
 def test_order(theta, order) -> None:
     errors = [fixed_step_error(steps, theta) for steps in (8, 16, 32)]
-    rates = [math.log2(a / b) for a, b in zip(errors, errors[1:], strict=False)]
+    rates = [math.log2(a / b) for a, b in pairwise(errors)]
     assert min(rates) > order - 0.5  # the interpolation's error within one step is a power better than over many
 
 
@@ -49,7 +49,11 @@ def test_linear_stability() -> None:
     # Stiffly accurate: on y' = λy with λh → -∞ one step ends at 0 (Steinebach 2023: L-stable).
     for stiffness in (1e4, 1e8, 1e12):
         run = integrate_by_rosenbrock(
-            lambda t, y, k=stiffness: -k * y, lambda t, y, k=stiffness: np.array([[-k]]), (0.0, 1.0), np.ones(1), settings(1e-4)
+            lambda t, y, k=stiffness: -k * y,
+            lambda t, y, k=stiffness: np.array([[-k]]),
+            (0.0, 1.0),
+            np.ones(1),
+            settings(1e-4),
         )
         assert run.status is SolverStatus.FINISHED
         assert abs(run.final[0]) < 1e-6
@@ -134,7 +138,7 @@ PROBLEMS = {
             0.2850001604814231e-2,
         ],
     ),
-    # Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.10; at t = 40 as printed there by LSODE's authors.
+    # Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.10; at t = 40 as LSODE prints it.
     "Robertson": (
         robertson,
         robertson_jacobian,
@@ -186,7 +190,11 @@ def test_a_budget_ends_a_run() -> None:
 def test_a_state_that_is_no_number_ends_a_run() -> None:
     with np.errstate(all="ignore"):
         run = integrate_by_rosenbrock(
-            lambda t, y: np.sqrt(0.5 - y), lambda t, y: -0.5 / np.sqrt(0.5 - y)[None], (0.0, 5.0), np.zeros(1), settings(1e-4)
+            lambda t, y: np.sqrt(0.5 - y),
+            lambda t, y: -0.5 / np.sqrt(0.5 - y)[None],
+            (0.0, 5.0),
+            np.zeros(1),
+            settings(1e-4),
         )
     assert run.status in (SolverStatus.FAILED, SolverStatus.FINISHED)
     assert run.edges[-1] <= 5.0
@@ -212,7 +220,5 @@ def test_it_answers_the_call_of_the_others() -> None:
 
 
 def test_the_method_is_stiffly_accurate() -> None:
-    from divideropt.ode import rosenbrock as method
-
     assert (method._A[STAGES - 1, :-1][5:7] == 1.0).all()
     assert 0.2 < GAMMA < 0.25

@@ -1,8 +1,8 @@
 """Compilation by numba, with a cache that notices every change.
 
-numba keeps compiled functions on disk, but looks at the age of a function's own file only: where a compiled function of
-another file has changed, a caller goes on with the old one. So the cache is in a folder named after the content of every
-compiled source of the package; another content is another folder.
+numba keeps compiled functions on disk, but looks at the age of a function's own file only: where a compiled function
+of another file has changed, a caller goes on with the old one. So the cache is in a folder named after the content of
+every compiled source of the package; another content is another folder.
 """
 
 import hashlib

@@ -1,13 +1,13 @@
 """Rodas5P, a Rosenbrock method of order 5 for stiff systems, compiled, by reverse communication.
 
-The method is that of Steinebach, "Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within the
-Julia Differential Equations package", BIT Numerical Mathematics 63:27 (2023), in the form of Hairer and Wanner, Solving
-Ordinary Differential Equations II, section IV.7: one factorisation of I/(γh) - J a step, eight stages, an error estimate
-of order 4 in the last of them, and an interpolation of order 4.
+The method is that of Steinebach, "Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within
+the Julia Differential Equations package", BIT Numerical Mathematics 63:27 (2023), in the form of Hairer and Wanner,
+Solving Ordinary Differential Equations II, section IV.7: one factorisation of I/(γh) - J a step, eight stages, an
+error estimate of order 4 in the last of them, and an interpolation of order 4.
 
-numba finds no cached version of a function that takes another compiled function as an argument. So the method never calls
-the right-hand side: `advance` does what it can and says what it wants next, and a loop of a few lines, which stands in
-the file of the right-hand side, supplies it.
+numba finds no cached version of a function that takes another compiled function as an argument. So the method never
+calls the right-hand side: `advance` does what it can and says what it wants next, and a loop of a few lines, which
+stands in the file of the right-hand side, supplies it.
 """
 
 import math
@@ -55,10 +55,14 @@ _C[7, :7] = (
     -40.06618937091002, -54.66780262877968, -9.48861652309627,
 )  # fmt: skip
 
-_PLACES = np.array([0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0, 1.0, 1.0])
+_PLACES = np.array(
+    [0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0, 1.0, 1.0]
+)
 """c: where in the step a stage is evaluated."""
 
-_SLOPES = np.array([GAMMA, -0.42387512638858027, -0.3384627126235924, 1.8046452872882734, 2.325825639765069, 0.0, 0.0, 0.0])
+_SLOPES = np.array(
+    [GAMMA, -0.42387512638858027, -0.3384627126235924, 1.8046452872882734, 2.325825639765069, 0.0, 0.0, 0.0]
+)
 """d: weight of ∂f/∂t in each stage."""
 
 _H = np.array(

@@ -69,7 +69,7 @@ def test_clearance_and_steady_state_error(measured, design, formulation, clearan
     assert round(q["steady_state_error"], 3) == error
 
 
-@pytest.mark.parametrize("method", ["LSODA", "BDF", "Radau"])
+@pytest.mark.parametrize("method", ["rosenbrock", "LSODA", "BDF", "Radau"])
 def test_methods_agree(measured, design, method) -> None:
     expected = measured(Divider(settings=REFERENCE), design())
     found = measured(Divider(settings=solver_settings(method, 1e-8, max_steps=100_000)), design())

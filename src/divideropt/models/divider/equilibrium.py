@@ -16,7 +16,16 @@ from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import PortRange, Stop
-from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, newton, rates, residual_scales
+from divideropt.models.divider.kernels import (
+    N_STATES,
+    STATES,
+    STOP_STIFFNESS,
+    centred_state,
+    jacobian,
+    newton,
+    rates,
+    residual_scales,
+)
 from divideropt.models.divider.record import Design
 from divideropt.ode import SolverSettings, integrate
 
@@ -82,7 +91,7 @@ def find_equilibrium(design: Design, start: FloatArray) -> Equilibrium | None:
     Returns:
         The equilibrium within the stroke or on the stop, or None if there is none.
     """
-    if rests_on_stop(design, start) and design[0].stop == Stop.FROZEN:
+    if _field(design, "stop") == Stop.FROZEN and rests_on_stop(design, start):
         return rest_on_rigid_stop(design, start)
     for method, search in _SEARCHES.items():
         found = search(design, start)
@@ -130,20 +139,12 @@ def force_profile(
 
 def rests_on_stop(design: Design, state: FloatArray) -> bool:
     """Whether the spool is on its stop, or beyond it; never where the formulation has none."""
-    return bool(design[0].stop != Stop.NONE and abs(state[_X]) >= design[0].stop_position)
+    return _field(design, "stop") != Stop.NONE and bool(abs(state[_X]) >= _field(design, "stop_position"))
 
 
 def initial_guess(design: Design) -> FloatArray:
     """Guess a state with the spool centred and the source flow halved, shape (9,)."""
-    d = design[0]
-    half = d.source_flow / 2
-    y = np.zeros(N_STATES)
-    y[7], y[8] = (half / d.load_1) ** 2, (half / d.load_2) ** 2
-    port = d.variable * 0.5 * np.pi * d.port_radius**2 * d.arc_holes
-    y[1], y[2] = y[7] + (half / port) ** 2, y[8] + (half / port) ** 2
-    y[0] = max(y[1] + (half / d.fixed_1) ** 2, y[2] + (half / d.fixed_2) ** 2)
-    y[3], y[4] = (y[0] + y[1]) / 2, (y[0] + y[2]) / 2
-    return y
+    return np.asarray(centred_state(design))
 
 
 def stability_margin(design: Design, state: FloatArray) -> float:
@@ -284,12 +285,17 @@ def _force_at(design: Design, guess: FloatArray, x: float) -> float:
 
 def _reach(design: Design) -> float:
     """How far an equilibrium is sought: the stop and what its spring gives, or where the ports end."""
-    d = design[0]
-    if d.port_range == PortRange.PRINTED:  # beyond, the equations give no number
-        return float(d.port_radius - abs(d.port_offset))
-    if d.stop != Stop.CONTACT:
-        return float(d.stop_position)
-    return float(d.stop_position + HIGHEST_PRESSURE * d.end_area / STOP_STIFFNESS)
+    if _field(design, "port_range") == PortRange.PRINTED:  # beyond, the equations give no number
+        return _field(design, "port_radius") - abs(_field(design, "port_offset"))
+    stop = _field(design, "stop_position")
+    if _field(design, "stop") != Stop.CONTACT:
+        return stop
+    return stop + HIGHEST_PRESSURE * _field(design, "end_area") / STOP_STIFFNESS
+
+
+def _field(design: Design, name: str) -> float:
+    """One number of a record; by an attribute it would take ten times as long."""
+    return float(design[name][0])
 
 
 def _residual_scales(design: Design, y: FloatArray) -> FloatArray:

@@ -242,6 +242,35 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def centred_state(design):  # type: ignore[no-untyped-def]
+    """Guess a state with the spool centred and the source flow halved, shape (9,)."""
+    d = design[0]
+    half = d.source_flow / 2.0
+    y = np.zeros(N_STATES)
+    y[7], y[8] = (half / d.load_1) ** 2, (half / d.load_2) ** 2
+    port = (half / (d.variable * 0.5 * math.pi * d.port_radius * d.port_radius * d.arc_holes)) ** 2
+    y[1], y[2] = y[7] + port, y[8] + port
+    y[0] = max(y[1] + (half / d.fixed_1) ** 2, y[2] + (half / d.fixed_2) ** 2)
+    y[3], y[4] = (y[0] + y[1]) / 2.0, (y[0] + y[2]) / 2.0
+    return y
+
+
+@compiled
+def flows_of(states, times, design):  # type: ignore[no-untyped-def]
+    """Return the load flows of many states, shape (n, 2).
+
+    Args:
+        states: Shape (n, 9).
+        times: When, shape (n,).
+        design: `COEFFICIENTS`, shape (1,).
+    """
+    flows = np.empty((times.size, 2))
+    for i in range(times.size):
+        flows[i, 0], flows[i, 1] = load_flows(times[i], states[i, 7], states[i, 8], design[0])
+    return flows
+
+
+@compiled
 def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iterations, halvings):  # type: ignore[no-untyped-def]
     """Solve some balances for some states by damped Newton steps.
 
@@ -285,8 +314,7 @@ def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iter
             for i in range(m):
                 trial[unknowns[i]] += share * step[i]
             for i in range(N_STATES):
-                if i != _VELOCITY and i != _POSITION:
-                    trial[i] = max(trial[i], 0.0)
+                trial[i] = trial[i] if i in (_VELOCITY, _POSITION) else max(trial[i], 0.0)
             trial[_POSITION] = min(max(trial[_POSITION], -reach), reach)
             motion(0.0, trial, d, out, spare)
             new = _largest(out, balances, scale)

@@ -104,7 +104,7 @@ def _worst_margin(response: Response) -> float:
     for phase in response.phases:
         if phase.span.moving:
             continue
-        rigid = phase.design[0].stop == Stop.FROZEN
+        rigid = phase.design["stop"][0] == Stop.FROZEN
         if phase.rest is None or (rigid and rests_on_stop(phase.design, phase.rest.state)):
             return math.nan
         margins.append(stability_margin(phase.design, phase.rest.state))

@@ -19,11 +19,10 @@ from divideropt.models.divider.formulations import Formulation, Stop
 from divideropt.models.divider.geometry import Geometry
 from divideropt.models.divider.kernels import (
     STATES,
+    flows_of,
     jacobian,
-    load_coefficients,
     rates,
     run,
-    signed_root,
     zero_state,
 )
 from divideropt.models.divider.record import Design
@@ -68,17 +67,10 @@ class Phase:
         Returns:
             Shape (…, 2).
         """
-        d = self.design[0]
-        pressures = np.maximum(states[..., 7:9], 0.0)
-        roots = signed_root(np.ascontiguousarray(pressures).ravel(), d.orifice_law)  # one shape, compiled once
-        sizes = np.array([d.load_1, d.load_2]) if d.moving == 0 else self._moving_loads(states, times)
-        return np.asarray(roots.reshape(pressures.shape) * sizes)
-
-    def _moving_loads(self, states: FloatArray, times: FloatArray | None) -> FloatArray:
-        """CdL AL √(2/ρ) of both loads at each state, shape (…, 2)."""
-        since = np.full(states.shape[:-1], self.span.end) if times is None else times
-        flat = [load_coefficients(time - self.span.begin, self.design[0]) for time in since.ravel()]
-        return np.array(flat).reshape(*states.shape[:-1], 2)
+        when = np.full(states.shape[:-1], self.span.end) if times is None else times
+        flat = np.ascontiguousarray(states).reshape(-1, states.shape[-1])  # one shape, compiled once
+        flows = flows_of(flat, np.ascontiguousarray(when).ravel(), self.design)
+        return np.asarray(flows).reshape(*states.shape[:-1], 2)
 
 
 @dataclass(frozen=True)
@@ -171,7 +163,7 @@ def _not_reached(span: Span, design: Design, earlier: Phase) -> Phase:
 
 def _integrate(span: Span, design: Design, start: FloatArray, settings: SolverSettings) -> Phase:
     times = (span.begin, span.end)
-    if design[0].stop == Stop.FROZEN:
+    if design["stop"][0] == Stop.FROZEN:
         trajectory = _integrate_to_frozen_stop(design, times, start, settings)
     else:
         trajectory = _run(design, times, start, settings)
@@ -205,7 +197,6 @@ def _run(
     event: Event | None = None,
 ) -> Trajectory:
     """Integrate; where a multistep method's budget ends, let an implicit Runge-Kutta method try."""
-
     if settings.method == ROSENBROCK:
         return _run_compiled(design, span, start, settings, event)
 

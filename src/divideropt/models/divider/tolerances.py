@@ -5,9 +5,9 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from divideropt.models.divider.kernels import FRICTION_VELOCITY, STATES
-from divideropt.ode import SolverSettings
+from divideropt.ode import ROSENBROCK, SolverSettings
 
-DEFAULT_METHOD = "LSODA"
+DEFAULT_METHOD = ROSENBROCK
 DEFAULT_RTOL = 1e-4
 DEFAULT_MAX_STEPS = 5_000
 """Twenty times what a design needs at the default tolerance; beyond, another method tries, see `response.RESCUER`."""

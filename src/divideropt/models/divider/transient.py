@@ -66,9 +66,7 @@ class FlowError:
         Returns:
             The two integrals [m^3].
         """
-        return integrals(
-            self._edges, self._pressures, self._flows, self._designs, self._which, reference, until
-        )  # type: ignore[no-any-return]
+        return integrals(self._edges, self._pressures, self._flows, self._designs, self._which, reference, until)  # type: ignore[no-any-return]
 
 
 _LOADS = slice(STATES.index("PL1"), STATES.index("PL2") + 1)
