@@ -187,7 +187,7 @@ MISTAKES = {
     "third load": (("start: settled", "step: {load: 3}"), [(4, 27, "the most permitted is 2")]),
     "true load": (("start: settled", "step: {load: true}"), [(4, 27, "true is not a whole number")]),
     "unknown solver": (
-        ("kind: divider", "kind: divider\n  solver: {method: rosenbrock}"),
+        ("kind: divider", "kind: divider\n  solver: {method: euler}"),
         [(4, 20, "use one of rosenbrock, LSODA, BDF, Radau")],
     ),
     "loose tolerance": (("kind: divider", "kind: divider\n  solver: {rtol: 1}"), [(4, 18, "at most 0.1")]),

@@ -263,9 +263,9 @@ def test_outcome_unstable(measured, design, formulation) -> None:
 
 @pytest.mark.parametrize("scenario", [Scenario(), Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))])
 def test_outcome_not_completed(measured, design, scenario) -> None:
-    q = outcome_of(measured, Divider("conservative", scenario, solver_settings(max_steps=30)), design())
+    q = outcome_of(measured, Divider("conservative", scenario, solver_settings(max_steps=12)), design())
     assert q["outcome"] is Outcome.NOT_COMPLETED
-    assert "30 steps did not suffice" in q["text"]
+    assert "12 steps did not suffice" in q["text"]
     for name in ("steady_state_error", "dynamic_error", "settling_time", "source_pressure", "leakage"):
         assert np.isnan(q[name]), name
     assert np.isfinite([q["peak_pressure"], q["stop_clearance"], q["open_drop"]]).all()
