@@ -129,7 +129,7 @@ def outcomes(stores: Mapping[str, Path]) -> str:
         parts = sorted((path / "evaluations").glob("*/part-*.parquet"))
         found = pd.concat([pd.read_parquet(part, columns=["outcome"]) for part in parts])["outcome"]
         words.append(f"{int((found == 'not_completed').sum())} of the {len(found)} simulations of `{name}.yaml`")
-    return f"The solver gave up on {' and on '.join(words)} (`not_completed`)."
+    return f"The solver did not complete {' and '.join(words)} (`not_completed`)."
 
 
 def simulated(problem: Problem, full: pd.DataFrame) -> pd.DataFrame:

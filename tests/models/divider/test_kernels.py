@@ -15,6 +15,7 @@ NESTED = (
     "motion",
     "fold_pilot",
     "fold_side",
+    "_fill",
     "load_coefficients",
     "gather",
     "_excess",

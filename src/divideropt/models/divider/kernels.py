@@ -310,7 +310,8 @@ def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iter
         improved = False
         share = 1.0
         for _ in range(halvings):
-            trial[:] = y
+            for i in range(N_STATES):
+                trial[i] = y[i]
             for i in range(m):
                 trial[unknowns[i]] += share * step[i]
             for i in range(N_STATES):
@@ -324,9 +325,10 @@ def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iter
             share *= 0.5
         if not improved:
             return size if size <= loosest else math.nan
-        y[:] = trial
+        for i in range(N_STATES):
+            y[i] = trial[i]
         size = new
-        jac[:] = 0.0
+        _clear(jac)
         motion(0.0, y, d, out, jac)
     return math.nan
 
@@ -396,7 +398,7 @@ def run(design, first, last, limit, s, k, y, f0, f, jac, slope, lu, pivots, U, u
     d = design[0]
     spare = np.zeros((N_STATES, N_STATES))
     edges[0] = first
-    jac[:] = 0.0
+    _clear(jac)
     motion(first, y, d, f0, jac)
     begin(s, k, first, last, limit, y, f0, rtol, atol)
     while True:
@@ -411,8 +413,16 @@ def run(design, first, last, limit, s, k, y, f0, f, jac, slope, lu, pivots, U, u
                 motion(s[STAGE_TIME], u, d, f, spare)
         if wanted != SLOPES:
             return wanted
-        jac[:] = 0.0
+        _clear(jac)
         motion(s[TIME], y, d, f0, jac)
+
+
+@compiled
+def _clear(matrix):  # type: ignore[no-untyped-def]
+    """Fill a matrix with zeros."""
+    for i in range(N_STATES):
+        for j in range(N_STATES):
+            matrix[i, j] = 0.0
 
 
 @compiled
@@ -464,29 +474,43 @@ def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # 
         to_end, to_chamber = conductance / tanh_near / 2.0, conductance * tanh_near / 2.0
         out = conductance / tanh_far / 2.0
         along = leakage * length * tanh_near
-        rows[0] = to_end + to_chamber, -to_chamber, -to_end
-        rows[1] = to_end - to_chamber, to_chamber, -to_end
-        rows[3] = 0.0, -out, out
-        rows[2] = rows[1] - rows[3]
-        rows[4] = -along, along - across, across
-        rows[5] = along, -along - across, across
+        _fill(rows, 0, to_end + to_chamber, -to_chamber, -to_end)
+        _fill(rows, 1, to_end - to_chamber, to_chamber, -to_end)
+        _fill(rows, 2, to_end - to_chamber, to_chamber + out, -to_end - out)
+        _fill(rows, 3, 0.0, -out, out)
+        _fill(rows, 4, -along, along - across, across)
+        _fill(rows, 5, along, -along - across, across)
         return rows
     # (2.20)-(2.33), (2.42) about the chambers' mean pressure, end flows as (A.29), (A.30); or, as coded in C.3,
     # (A.22)-(A.25), (A.31)-(A.38) about zero.
     mean = 0.5 if pilot == 1 else 0.0
     sin_near, cos_near = math.sin(near / length), math.cos(near / length)
     sin_far, cos_far = math.sin(far / length), math.cos(far / length)
-    ps, pa, pb = np.array([1.0, -mean, -mean]), np.array([0.0, 1.0 - mean, -mean]), np.array([0.0, -mean, 1.0 - mean])
-    at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
-    at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
-    profile = -ps * sin_near + at_supply * (cos_near - 1.0) - pa * sin_far - at_outlet * (1.0 - cos_far)
-    rows[0] = -conductance * at_supply
-    rows[1] = conductance * (ps * sin_near - at_supply * cos_near)
-    rows[2] = rows[1] - conductance * (at_outlet * cos_far - pa * sin_far)
-    rows[3] = conductance * at_outlet
-    rows[4] = across * (pb - pa) + leakage_sign * leakage * length * profile
-    rows[5] = across * (pb - pa) - leakage * length * profile
+    for i in range(3):
+        share = mean if i > 0 else 0.0  # of Pa and Pb in their mean
+        ps, pa, pb = -share, -share, -share
+        if i == 0:
+            ps += 1.0
+        elif i == 1:
+            pa += 1.0
+        else:
+            pb += 1.0
+        at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
+        at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
+        profile = -ps * sin_near + at_supply * (cos_near - 1.0) - pa * sin_far - at_outlet * (1.0 - cos_far)
+        rows[0, i] = -conductance * at_supply
+        rows[1, i] = conductance * (ps * sin_near - at_supply * cos_near)
+        rows[2, i] = rows[1, i] - conductance * (at_outlet * cos_far - pa * sin_far)
+        rows[3, i] = conductance * at_outlet
+        rows[4, i] = across * (pb - pa) + leakage_sign * leakage * length * profile
+        rows[5, i] = across * (pb - pa) - leakage * length * profile
     return rows
+
+
+@compiled
+def _fill(rows, i, ps, pa, pb):  # type: ignore[no-untyped-def]
+    """Fill a row; element by element, since an array expression takes numba seconds to compile."""
+    rows[i, 0], rows[i, 1], rows[i, 2] = ps, pa, pb
 
 
 @compiled
