@@ -7,7 +7,6 @@ every compiled source of the package; another content is another folder.
 
 import hashlib
 import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -47,7 +46,7 @@ def _folder() -> Path:
     beside = _PACKAGE / "__pycache__"
     if os.access(beside if beside.exists() else _PACKAGE, os.W_OK):
         return beside / name
-    return Path(tempfile.gettempdir()) / f"divideropt-{os.getuid()}" / name
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "divideropt" / name
 
 
 _FOLDER = _folder()

@@ -310,13 +310,7 @@ def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iter
         improved = False
         share = 1.0
         for _ in range(halvings):
-            for i in range(N_STATES):
-                trial[i] = y[i]
-            for i in range(m):
-                trial[unknowns[i]] += share * step[i]
-            for i in range(N_STATES):
-                trial[i] = trial[i] if i in (_VELOCITY, _POSITION) else max(trial[i], 0.0)
-            trial[_POSITION] = min(max(trial[_POSITION], -reach), reach)
+            _step_to(y, step, share, unknowns, reach, trial)
             motion(0.0, trial, d, out, spare)
             new = _largest(out, balances, scale)
             if new < size:
@@ -331,6 +325,19 @@ def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iter
         _clear(jac)
         motion(0.0, y, d, out, jac)
     return math.nan
+
+
+@compiled
+def _step_to(y, step, share, unknowns, reach, trial):  # type: ignore[no-untyped-def]
+    """Fill the state a share of a step away; pressures stay positive, the spool within reach."""
+    for i in range(N_STATES):
+        trial[i] = y[i]
+    for i in range(unknowns.size):
+        trial[unknowns[i]] += share * step[i]
+    for i in range(N_STATES):
+        if i not in (_VELOCITY, _POSITION):
+            trial[i] = max(trial[i], 0.0)
+    trial[_POSITION] = min(max(trial[_POSITION], -reach), reach)
 
 
 @compiled
