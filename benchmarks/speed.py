@@ -5,6 +5,7 @@ same start over the same second: `scipy.integrate.odeint` (LSODA, with the Jacob
 the same in plain Python. Designs: the feasible ones among Sobol points of the box of divider.yaml. Single-threaded.
 """
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -49,7 +50,7 @@ def main(count: int) -> None:
 
 def feasible(problem: Problem, model: Divider, count: int) -> list[dict[str, float]]:
     """The feasible designs among the first Sobol points of the box, whole."""
-    unit = qmc.Sobol(len(problem.space), rng=0).random(count)
+    unit = qmc.Sobol(len(problem.space), rng=0).random_base2(math.ceil(math.log2(count)))[:count]
     points = qmc.scale(unit, problem.space.lower, problem.space.upper)
     told = problem.tell(problem.simulate(points))
     names = problem.space.names

@@ -149,7 +149,7 @@ def initial_guess(design: Design) -> FloatArray:
 
 def stability_margin(design: Design, state: FloatArray) -> float:
     """Return minus the largest real part of the Jacobian's eigenvalues [1/s], without Coulomb friction."""
-    free = without_friction(design)
+    free = without_friction(design) if _field(design, "coulomb_friction") else design
     matrix = jacobian(0.0, state, free)
     if not np.isfinite(matrix).all():
         return float("nan")

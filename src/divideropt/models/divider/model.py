@@ -38,7 +38,7 @@ class Divider:
     settings: SolverSettings = field(default_factory=solver_settings)
     groove_loss: bool = False
 
-    @property
+    @cached_property
     def reading(self) -> Formulation:
         """The formulation, with its options."""
         return replace(FORMULATIONS[self.formulation], groove_loss=self.groove_loss)

@@ -42,17 +42,18 @@ def sustained_oscillation(phase: Phase, smallest: float) -> Oscillation | None:
     rest = float(phase.load_flows(phase.rest.state)[0])
     if rest <= 0.0:
         return None
-    begin, end = phase.span.begin, phase.span.end
-    quarter = (end - begin) / 4
-    early, late = (
-        _swing(phase, rest, end - left * quarter, end - right * quarter) for left, right in ((2, 1), (1, 0))
-    )
-    if min(early.size, late.size) == 0:
+    end = phase.span.end
+    quarter = (end - phase.span.begin) / 4
+    late = _swing(phase, rest, end - quarter, end)
+    if late.size == 0 or np.abs(late).max() < smallest:
+        return None
+    early = _swing(phase, rest, end - 2 * quarter, end - quarter)
+    if early.size == 0:
         return None
     amplitudes = [float(np.abs(swing).max()) for swing in (early, late)]
     crossings = [int(np.count_nonzero(np.diff(np.signbit(swing)))) for swing in (early, late)]
     steady = abs(amplitudes[1] - amplitudes[0]) <= STEADY * amplitudes[0]
-    if not steady or amplitudes[1] < smallest or min(crossings) < FEWEST_CROSSINGS:
+    if not steady or min(crossings) < FEWEST_CROSSINGS:
         return None
     return Oscillation(max(amplitudes), sum(crossings) / 2 / (2 * quarter))
 
