@@ -68,9 +68,7 @@ def accuracy(model: Divider, designs: Sequence[dict[str, float]]) -> None:
         off = np.abs(chosen.evaluate(matrix)[0][:, places] / exact - 1)
         for name, column in zip(OBJECTIVES, off.T, strict=True):
             middle = np.median(column)
-            print(
-                f"{label}, {name}: relative deviation from Radau at 1e-10, worst {column.max():.1e}, median {middle:.1e}"
-            )
+            print(f"{label}, {name}: deviation from Radau at 1e-10, worst {column.max():.1e}, median {middle:.1e}")
 
 
 def right_hand_side(model: Divider, p: dict[str, float]) -> None:
