@@ -22,10 +22,11 @@ from threadpoolctl import threadpool_limits
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import Divider, kernels, solver_settings
-from divideropt.models.divider.kernels import jacobian, motion, rates, run
+from divideropt.models.divider import Divider, groove_kernels, kernels, solver_settings
+from divideropt.models.divider.kernels import jacobian, motion, rates
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.response import Response
+from divideropt.models.divider.solver_kernels import run
 from divideropt.ode.rosenbrock import Workspace
 from divideropt.problem import Problem
 
@@ -156,15 +157,19 @@ def in_python(design: Design, start: FloatArray) -> None:
 @contextmanager
 def uncompiled() -> Iterator[None]:
     """Let the kernels' Python sources call each other's."""
-    dispatchers = {name: f for name, f in vars(kernels).items() if hasattr(f, "py_func")}
-    called = {name: f for name, f in dispatchers.items() if name not in ("rates", "jacobian")}
-    for name, f in called.items():
-        setattr(kernels, name, f.py_func)
+    called = [
+        (module, name, f)
+        for module in (kernels, groove_kernels)
+        for name, f in vars(module).items()
+        if hasattr(f, "py_func") and name not in ("rates", "jacobian")
+    ]
+    for module, name, f in called:
+        setattr(module, name, f.py_func)
     try:
         yield
     finally:
-        for name, f in called.items():
-            setattr(kernels, name, f)
+        for module, name, f in called:
+            setattr(module, name, f)
 
 
 def timed(call: Callable[[], Any], repeats: int) -> float:

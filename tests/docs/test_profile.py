@@ -5,7 +5,7 @@ import pytest
 from modelpages.profile import groove_pressure
 
 from divideropt.models.divider.formulations import Pilot
-from divideropt.models.divider.kernels import fold_side
+from divideropt.models.divider.groove_kernels import fold_side
 
 LENGTH, TAP, END = 0.9, 0.5, 1.4
 PRESSURES = (18.7e6, 18.0e6, 17.3e6)

@@ -10,14 +10,14 @@ from divideropt.ode.compiled import compiled
 EVALUATE = """
 import numpy as np
 from divideropt.models.divider import Divider, parameter_set
-from divideropt.models.divider import kernels, transient
+from divideropt.models.divider import groove_kernels, kernels, solver_kernels, transient
 from divideropt.ode import interpolate, linear, rosenbrock
 
 model = Divider()
 model.evaluate(np.array([list(parameter_set("thesis_base").values())]))
 dispatchers = {
     id(f): f
-    for module in (kernels, transient, rosenbrock, linear, interpolate)
+    for module in (kernels, groove_kernels, solver_kernels, transient, rosenbrock, linear, interpolate)
     for f in vars(module).values()
     if hasattr(f, "stats")
 }

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from divideropt.ode import SolverSettings, SolverStatus, integrate
 from divideropt.ode import rosenbrock as method
-from divideropt.ode.rosenbrock import GAMMA, STAGES, integrate_by_rosenbrock
+from divideropt.ode.rosenbrock import integrate_by_rosenbrock
 
 
 def settings(rtol: float, scale=(1.0,), max_steps: int = 100_000) -> SolverSettings:
@@ -188,17 +188,16 @@ def test_a_budget_ends_a_run() -> None:
 
 
 def test_a_state_that_is_no_number_ends_a_run() -> None:
-    with np.errstate(all="ignore"):
-        run = integrate_by_rosenbrock(
-            lambda t, y: np.sqrt(0.5 - y),
-            lambda t, y: -0.5 / np.sqrt(0.5 - y)[None],
-            (0.0, 5.0),
-            np.zeros(1),
-            settings(1e-4),
-        )
-    assert run.status in (SolverStatus.FAILED, SolverStatus.FINISHED)
-    assert run.edges[-1] <= 5.0
-    assert np.isfinite(run.values).all()
+    run = integrate_by_rosenbrock(
+        lambda t, y: np.array([math.nan if t > 1.0 else 1.0]),
+        lambda t, y: np.zeros((1, 1)),
+        (0.0, 5.0),
+        np.zeros(1),
+        settings(1e-4),
+    )
+    assert run.status is SolverStatus.FAILED
+    assert run.edges[-1] == pytest.approx(1.0, abs=1e-3)  # as far as it could be known
+    assert run.final[0] == pytest.approx(run.edges[-1], rel=1e-12)
 
 
 def test_an_event_ends_a_run_where_it_happens() -> None:
@@ -217,8 +216,3 @@ def test_it_answers_the_call_of_the_others() -> None:
     by_name = integrate(rates, jacobian, (0.0, end), np.array(start), chosen)
     direct = integrate_by_rosenbrock(rates, jacobian, (0.0, end), np.array(start), chosen)
     np.testing.assert_array_equal(by_name.values, direct.values)
-
-
-def test_the_method_is_stiffly_accurate() -> None:
-    assert (method._A[STAGES - 1, :-1][5:7] == 1.0).all()
-    assert 0.2 < GAMMA < 0.25

@@ -18,7 +18,7 @@ from divideropt.models.divider.response import Response
 from divideropt.models.divider.scenarios import BASE
 from divideropt.units import parse_measure
 
-POINTS_PER_STEP = 4
+POINTS_PER_STEP = 16
 """Rows of a table for each step the solver took."""
 
 COLUMNS = {

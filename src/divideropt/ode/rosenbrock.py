@@ -241,18 +241,9 @@ def integrate_by_rosenbrock(
     settings: SolverSettings,
     event: Event | None = None,
 ) -> Trajectory:
-    """Integrate a system whose right-hand side is any function; one compiled beside its own loop is much faster.
+    """Integrate a system whose right-hand side is any function; see `divideropt.ode.integrate`.
 
-    Args:
-        rates: dy/dt as a function of (t, y), shape (n,).
-        jacobian: Its derivatives by y, shape (n, n).
-        span: First and last time.
-        start: State at the first time, shape (n,).
-        settings: Tolerances and budget.
-        event: A function of the state; the trajectory ends within the first step at whose end it is positive.
-
-    Returns:
-        The trajectory, as `divideropt.ode.integrate`.
+    One that is compiled beside a loop of its own is much faster.
     """
     work = Workspace(len(start), settings.max_steps)
     y, f0, f, jac, slope = work.state, work.f0, work.f, work.jac, work.slope

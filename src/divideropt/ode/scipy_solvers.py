@@ -31,21 +31,7 @@ def integrate_by_scipy(
     settings: SolverSettings,
     event: Event | None = None,
 ) -> Trajectory:
-    """Integrate from one event to the next.
-
-    Args:
-        rates: dy/dt as a function of (t, y), shape (n,).
-        jacobian: Its derivatives by y, shape (n, n).
-        span: First and last time.
-        start: State at the first time, shape (n,).
-        settings: Method, tolerances, budget.
-        event: A function of the state; the trajectory ends within the first step at whose end it is positive, where
-            it has become so.
-
-    Returns:
-        The trajectory, up to the event or to where the solver gave up. It holds at least one step: if the very first
-        failed, the start's state over the whole span.
-    """
+    """Integrate by one of SciPy's methods; see `divideropt.ode.integrate`."""
     solver = SCIPY_METHODS[settings.method](
         rates,
         span[0],

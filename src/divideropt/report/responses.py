@@ -32,7 +32,7 @@ LEAD_POINTS = 30
 LEAD = 0.02
 """Time before the step that is drawn, as a share of the time after it."""
 
-POINTS_PER_STEP = 5
+POINTS_PER_STEP = 30
 """Candidates for points in each step of the solver."""
 
 FINE = 2e-4

@@ -7,24 +7,16 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from divideropt.models.divider import Scenario, kernels
+from divideropt.models.divider import Scenario, groove_kernels, kernels
 from divideropt.models.divider.formulations import OrificeLaw, PortRange, Stop
 from divideropt.models.divider.kernels import N_STATES, ROOT_BLEND, STATES, jacobian, rates, signed_root
 
-NESTED = (
-    "motion",
-    "fold_pilot",
-    "fold_side",
-    "_fill",
-    "load_coefficients",
-    "gather",
-    "_excess",
-    "_carry",
-    "_floored",
-    "_root",
-    "_port",
-    "_stop_force",
-)
+NESTED = [
+    (module, name, f.py_func)
+    for module in (kernels, groove_kernels)
+    for name, f in vars(module).items()
+    if hasattr(f, "py_func") and name not in ("rates", "jacobian")
+]
 FORMULATIONS = ("conservative", "text", "listing")
 
 STATE_SCALES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 0.1, 1e-3, 1e7, 1e7])
@@ -57,8 +49,8 @@ def state_of(drawn, d) -> np.ndarray:
 def python_instead() -> Iterator[None]:
     """Let the kernels' Python sources call each other's Python sources, not the compiled functions."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in NESTED:
-            patch.setattr(kernels, name, getattr(kernels, name).py_func)
+        for module, name, source in NESTED:
+            patch.setattr(module, name, source)
         yield
 
 

@@ -7,7 +7,7 @@ from divideropt.models.base import Outcome
 from divideropt.models.divider import FORMULATIONS, Divider, Scenario, solver_settings
 from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.equilibrium import find_equilibrium, initial_guess
-from divideropt.models.divider.kernels import groove_inlets
+from divideropt.models.divider.groove_kernels import groove_inlets
 
 TIGHT = solver_settings("LSODA", 1e-8, max_steps=100_000)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from divideropt.models.divider.formulations import Formulation
 from divideropt.models.divider.geometry import Geometry, derive_geometry
-from divideropt.models.divider.kernels import fold_pilot
+from divideropt.models.divider.groove_kernels import fold_pilot
 from divideropt.models.divider.pilot import ENTRANCE_SHARE, Groove, leakage_sign
 from divideropt.models.divider.record import Design, record_of
 from divideropt.models.divider.scenario import Inputs, Span, load_areas

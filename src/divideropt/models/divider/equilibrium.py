@@ -16,17 +16,9 @@ from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import PortRange, Stop
-from divideropt.models.divider.kernels import (
-    N_STATES,
-    STATES,
-    STOP_STIFFNESS,
-    centred_state,
-    jacobian,
-    newton,
-    rates,
-    residual_scales,
-)
+from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
 from divideropt.models.divider.record import Design
+from divideropt.models.divider.solver_kernels import centred_state, newton, residual_scales
 from divideropt.ode import SolverSettings, integrate
 
 TOLERANCE = 1e-13

@@ -10,16 +10,13 @@ import math
 import numpy as np
 
 from divideropt.models.base import FloatArray
+from divideropt.models.divider.groove_kernels import fold_pilot, groove_excess
 from divideropt.ode.compiled import compiled
-from divideropt.ode.linear import factorise, solve
-from divideropt.ode.rosenbrock import RATES, SLOPES, STAGE_TIME, TIME, TIME_DIFFERENCE, advance, begin
 
 STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
 """Names of the states, in the order of a state vector."""
 
 N_STATES = len(STATES)
-
-_VELOCITY, _POSITION = STATES.index("xdot"), STATES.index("x")
 
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
@@ -184,16 +181,16 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
     # What a groove's entrance and exit take off the flows through it.
     if d.entrance_loss > 0.0:
         near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
-        e, e_ = _excess(Ps - Pb1, near, d.entrance_loss, d)
+        e, e_ = groove_excess(Ps - Pb1, near, d.entrance_loss, d)
         _carry(e, e_, 0, 3, Ps_, Pb1_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb1, out, jac)
         jac[3, 6] -= 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
-        e, e_ = _excess(Pb1 - Pa1, far, d.exit_loss, d)
+        e, e_ = groove_excess(Pb1 - Pa1, far, d.exit_loss, d)
         _carry(e, e_, 3, 1, Pb1_, Pa1_, d.bulk_modulus / Vb1, d.pilot_bypass * d.chamber_gain, out, jac)
         jac[3, 6] += 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
-        e, e_ = _excess(Ps - Pb2, far, d.entrance_loss, d)
+        e, e_ = groove_excess(Ps - Pb2, far, d.entrance_loss, d)
         _carry(e, e_, 0, 4, Ps_, Pb2_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb2, out, jac)
         jac[4, 6] += 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
-        e, e_ = _excess(Pb2 - Pa2, near, d.exit_loss, d)
+        e, e_ = groove_excess(Pb2 - Pa2, near, d.exit_loss, d)
         _carry(e, e_, 4, 2, Pb2_, Pa2_, d.bulk_modulus / Vb2, d.pilot_bypass * d.chamber_gain, out, jac)
         jac[4, 6] -= 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
 
@@ -242,20 +239,6 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def centred_state(design):  # type: ignore[no-untyped-def]
-    """Guess a state with the spool centred and the source flow halved, shape (9,)."""
-    d = design[0]
-    half = d.source_flow / 2.0
-    y = np.zeros(N_STATES)
-    y[7], y[8] = (half / d.load_1) ** 2, (half / d.load_2) ** 2
-    port = (half / (d.variable * 0.5 * math.pi * d.port_radius * d.port_radius * d.arc_holes)) ** 2
-    y[1], y[2] = y[7] + port, y[8] + port
-    y[0] = max(y[1] + (half / d.fixed_1) ** 2, y[2] + (half / d.fixed_2) ** 2)
-    y[3], y[4] = (y[0] + y[1]) / 2.0, (y[0] + y[2]) / 2.0
-    return y
-
-
-@compiled
 def flows_of(states, times, design):  # type: ignore[no-untyped-def]
     """Return the load flows of many states, shape (n, 2).
 
@@ -271,282 +254,11 @@ def flows_of(states, times, design):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def newton(design, y, unknowns, balances, scale, reach, tolerance, loosest, iterations, halvings):  # type: ignore[no-untyped-def]
-    """Solve some balances for some states by damped Newton steps.
-
-    Args:
-        design: `COEFFICIENTS`, shape (1,).
-        y: The start, shape (9,); receives the solution. The spool's velocity stays as it is.
-        unknowns: Indices of the states to be found, shape (m,).
-        balances: Indices of the rates that must vanish, shape (m,).
-        scale: What divides those, shape (m,).
-        reach: Largest distance of the spool from the centre [m].
-        tolerance: Scaled residual at which it stops.
-        loosest: Scaled residual that will do where no step improves it.
-        iterations: Budget of steps.
-        halvings: How often a step is halved before it is taken as lost.
-
-    Returns:
-        The largest scaled residual, or NaN where it is not small.
-    """
-    m = unknowns.size
-    d = design[0]
-    out, jac, spare = np.empty(N_STATES), np.zeros((N_STATES, N_STATES)), np.zeros((N_STATES, N_STATES))
-    a, pivots, step, trial = np.empty((m, m)), np.empty(m, np.int64), np.empty(m), np.empty(N_STATES)
-    motion(0.0, y, d, out, jac)
-    size = _largest(out, balances, scale)
-    for _ in range(iterations):
-        if not size < math.inf:
-            return math.nan
-        if size <= tolerance:
-            return size
-        for i in range(m):
-            for j in range(m):
-                a[i, j] = jac[balances[i], unknowns[j]] / scale[i]
-            step[i] = -out[balances[i]] / scale[i]
-        if not factorise(a, pivots):
-            return math.nan
-        solve(a, pivots, step)
-        improved = False
-        share = 1.0
-        for _ in range(halvings):
-            _step_to(y, step, share, unknowns, reach, trial)
-            motion(0.0, trial, d, out, spare)
-            new = _largest(out, balances, scale)
-            if new < size:
-                improved = True
-                break
-            share *= 0.5
-        if not improved:
-            return size if size <= loosest else math.nan
-        for i in range(N_STATES):
-            y[i] = trial[i]
-        size = new
-        _clear(jac)
-        motion(0.0, y, d, out, jac)
-    return math.nan
-
-
-@compiled
-def _step_to(y, step, share, unknowns, reach, trial):  # type: ignore[no-untyped-def]
-    """Fill the state a share of a step away; pressures stay positive, the spool within reach."""
-    for i in range(N_STATES):
-        trial[i] = y[i]
-    for i in range(unknowns.size):
-        trial[unknowns[i]] += share * step[i]
-    for i in range(N_STATES):
-        if i not in (_VELOCITY, _POSITION):
-            trial[i] = max(trial[i], 0.0)
-    trial[_POSITION] = min(max(trial[_POSITION], -reach), reach)
-
-
-@compiled
-def _largest(out, balances, scale):  # type: ignore[no-untyped-def]
-    """Return the largest scaled residual; NaN where one is."""
-    size = 0.0
-    for i in range(balances.size):
-        value = abs(out[balances[i]]) / scale[i]
-        if math.isnan(value):
-            return value
-        size = max(size, value)
-    return size
-
-
-@compiled
-def residual_scales(design, y, pressure):  # type: ignore[no-untyped-def]
-    """Return what divides each rate, shape (9,): that of a pressure as if the source flow filled its volume.
-
-    Args:
-        design: `COEFFICIENTS`, shape (1,).
-        y: State, shape (9,).
-        pressure: On the end area it makes the force that divides a force [Pa].
-    """
-    d = design[0]
-    flow = d.source_flow
-    scale = np.ones(N_STATES)
-    scale[0] = flow * d.source_gain
-    scale[1] = scale[2] = flow * d.chamber_gain
-    scale[3] = flow * d.bulk_modulus / (d.end_volume + d.end_area * y[_POSITION])
-    scale[4] = flow * d.bulk_modulus / (d.end_volume - d.end_area * y[_POSITION])
-    scale[_VELOCITY] = pressure * d.end_area / d.mass
-    scale[7] = scale[8] = flow * d.load_gain
-    return scale
-
-
-@compiled
-def run(design, first, last, limit, s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, bound, edges, values):  # type: ignore[no-untyped-def]
-    """Integrate by `divideropt.ode.rosenbrock`: the loop that supplies its right-hand side.
-
-    Args:
-        design: `COEFFICIENTS`, shape (1,).
-        first: First time [s].
-        last: Last time [s].
-        limit: Budget of steps.
-        s: With those that follow up to `u`, the arrays of a `Workspace`; `y` holds the start.
-        k: See `s`.
-        y: See `s`.
-        f0: See `s`.
-        f: See `s`.
-        jac: See `s`.
-        slope: See `s`.
-        lu: See `s`.
-        pivots: See `s`.
-        U: See `s`.
-        u: See `s`.
-        rtol: Relative tolerance.
-        atol: Absolute tolerance a state, shape (9,).
-        bound: Where the spool's position ends the run [m]; infinity if nowhere.
-        edges: Receives the times, shape (limit + 1,).
-        values: Receives the states at the nodes of each step, shape (limit, 9, NODES_PER_STEP).
-
-    Returns:
-        How it ended, as `advance`.
-    """
-    d = design[0]
-    spare = np.zeros((N_STATES, N_STATES))
-    edges[0] = first
-    _clear(jac)
-    motion(first, y, d, f0, jac)
-    begin(s, k, first, last, limit, y, f0, rtol, atol)
-    while True:
-        if d.moving != 0:
-            _time_slope(s[TIME], TIME_DIFFERENCE * (last - first), y, d, f, slope, spare)
-        wanted = RATES
-        while wanted == RATES:
-            wanted = advance(
-                s, k, y, f0, f, jac, slope, lu, pivots, U, u, rtol, atol, _POSITION, bound, edges, values
-            )
-            if wanted == RATES:
-                motion(s[STAGE_TIME], u, d, f, spare)
-        if wanted != SLOPES:
-            return wanted
-        _clear(jac)
-        motion(s[TIME], y, d, f0, jac)
-
-
-@compiled
-def _clear(matrix):  # type: ignore[no-untyped-def]
-    """Fill a matrix with zeros."""
-    for i in range(N_STATES):
-        for j in range(N_STATES):
-            matrix[i, j] = 0.0
-
-
-@compiled
-def _time_slope(t, step, y, d, f, slope, spare):  # type: ignore[no-untyped-def]
-    """Fill ∂f/∂t by a central difference; `f` and `spare` are work."""
-    motion(t + step, y, d, slope, spare)
-    motion(t - step, y, d, f, spare)
-    for i in range(N_STATES):
-        slope[i] = (slope[i] - f[i]) / (2.0 * step)
-
-
-@compiled
-def fold_pilot(position, d):  # type: ignore[no-untyped-def]
-    """Fold the pilot stage: what both grooves of a side add to supply, flow chamber and end chamber.
-
-    Args:
-        position: φ/φ0.
-        d: A record of `COEFFICIENTS`; receives `pilot_1` and `pilot_2`, each shape (3, 3): a row a balance, a column
-            for each of Ps, Pa, Pb [m^3/(s Pa)].
-    """
-    near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
-    conductance, length, leakage = d.groove_conductance, d.groove_length, d.groove_leakage
-    gather(fold_side(d.pilot, conductance, length, leakage, near, far, 1.0), d.pilot_bypass, d.pilot_1)
-    gather(fold_side(d.pilot, conductance, length, leakage, far, near, d.leakage_sign), d.pilot_bypass, d.pilot_2)
-
-
-@compiled
-def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # type: ignore[no-untyped-def]
-    """Fold the grooves of one side, whose tap lies the angle `near` from the supply and `far` from the outlet.
-
-    Args:
-        pilot: A `Pilot`.
-        conductance: G = b⁴/(185 μ r √c) [m^3/(s Pa)].
-        length: √c [rad], (A.13).
-        leakage: r δ³/(6 μ h) [m^3/(s Pa)].
-        near: Angle from supply to tap.
-        far: Angle from tap to outlet.
-        leakage_sign: Of the profile's part in the end chamber's leakage.
-
-    Returns:
-        Coefficients of (Ps, Pa, Pb), shape (6, 3), rows inlet, arriving, tap, outlet (one groove), end_leakage,
-        chamber_leakage (both).
-    """
-    rows = np.empty((6, 3))
-    across = leakage * (near + far) / 2.0
-    if pilot == 0:
-        # c P'' = P - (Pa + Pb)/2 in half angles, which neither overflow nor cancel: coth v ∓ 1/sinh v = tanh(v/2)^±1.
-        tanh_near, tanh_far = math.tanh(near / length / 2.0), math.tanh(far / length / 2.0)
-        to_end, to_chamber = conductance / tanh_near / 2.0, conductance * tanh_near / 2.0
-        out = conductance / tanh_far / 2.0
-        along = leakage * length * tanh_near
-        _fill(rows, 0, to_end + to_chamber, -to_chamber, -to_end)
-        _fill(rows, 1, to_end - to_chamber, to_chamber, -to_end)
-        _fill(rows, 2, to_end - to_chamber, to_chamber + out, -to_end - out)
-        _fill(rows, 3, 0.0, -out, out)
-        _fill(rows, 4, -along, along - across, across)
-        _fill(rows, 5, along, -along - across, across)
-        return rows
-    # (2.20)-(2.33), (2.42) about the chambers' mean pressure, end flows as (A.29), (A.30); or, as coded in C.3,
-    # (A.22)-(A.25), (A.31)-(A.38) about zero.
-    mean = 0.5 if pilot == 1 else 0.0
-    sin_near, cos_near = math.sin(near / length), math.cos(near / length)
-    sin_far, cos_far = math.sin(far / length), math.cos(far / length)
-    for i in range(3):
-        share = mean if i > 0 else 0.0  # of Pa and Pb in their mean
-        ps, pa, pb = -share, -share, -share
-        if i == 0:
-            ps += 1.0
-        elif i == 1:
-            pa += 1.0
-        else:
-            pb += 1.0
-        at_supply = (pb - ps * cos_near) / sin_near  # Cd1, Cb2
-        at_outlet = (pb - pa * cos_far) / sin_far  # Cb1, Cd2
-        profile = -ps * sin_near + at_supply * (cos_near - 1.0) - pa * sin_far - at_outlet * (1.0 - cos_far)
-        rows[0, i] = -conductance * at_supply
-        rows[1, i] = conductance * (ps * sin_near - at_supply * cos_near)
-        rows[2, i] = rows[1, i] - conductance * (at_outlet * cos_far - pa * sin_far)
-        rows[3, i] = conductance * at_outlet
-        rows[4, i] = across * (pb - pa) + leakage_sign * leakage * length * profile
-        rows[5, i] = across * (pb - pa) - leakage * length * profile
-    return rows
-
-
-@compiled
-def _fill(rows, i, ps, pa, pb):  # type: ignore[no-untyped-def]
-    """Fill a row; element by element, since an array expression takes numba seconds to compile."""
-    rows[i, 0], rows[i, 1], rows[i, 2] = ps, pa, pb
-
-
-@compiled
-def gather(rows, bypass, net):  # type: ignore[no-untyped-def]
-    """Gather a side's flows into the balances of supply, flow chamber and end chamber, shape (3, 3)."""
-    for i in range(3):
-        net[0, i] = -2.0 * bypass * rows[0, i]
-        net[1, i] = bypass * (2.0 * rows[3, i] + rows[5, i])
-        net[2, i] = 2.0 * rows[2, i] - rows[4, i]
-
-
-@compiled
 def load_coefficients(since, d):  # type: ignore[no-untyped-def]
     """Return CdL AL √(2/ρ) of both loads, `since` seconds after their pressures began to move."""
     first = d.load_flow / math.sqrt(d.load_pressure_1 + d.load_pressure_1_rate * since)
     second = d.load_flow / math.sqrt(d.load_pressure_2 + d.load_pressure_2_rate * since)
     return first, second
-
-
-@compiled
-def _excess(drop, angle, loss, d):  # type: ignore[no-untyped-def]
-    """Return what a loss adds to the laminar flow through a stretch of one groove (negative), and its slope.
-
-    The flow q is the root of R q + k q |q| = drop, with R the stretch's laminar resistance and k the loss.
-    """
-    laminar = d.groove_conductance * d.groove_length / angle
-    resistance = 1.0 / laminar
-    root = math.sqrt(resistance * resistance + 4.0 * loss * abs(drop))
-    return drop * (2.0 / (resistance + root) - laminar), 1.0 / root - laminar
 
 
 @compiled
@@ -558,25 +270,6 @@ def _carry(e, e_, here, there, here_, there_, gain_here, gain_there, out, jac): 
     out[there] += 2.0 * gain_there * e
     jac[there, here] += 2.0 * gain_there * e_ * here_
     jac[there, there] -= 2.0 * gain_there * e_ * there_
-
-
-@compiled
-def groove_inlets(y, d):  # type: ignore[no-untyped-def]
-    """Return Qc1i and Qc2i [m^3/s], from the supply into one groove of either side, at a state under constant inputs.
-
-    Args:
-        y: State, shape (9,).
-        d: A record of `COEFFICIENTS`.
-    """
-    near, far = d.spool_position * d.groove_angle, (1.0 - d.spool_position) * d.groove_angle
-    first = fold_side(d.pilot, d.groove_conductance, d.groove_length, d.groove_leakage, near, far, 1.0)[0]
-    second = fold_side(d.pilot, d.groove_conductance, d.groove_length, d.groove_leakage, far, near, 1.0)[0]
-    q1 = first[0] * y[0] + first[1] * y[1] + first[2] * y[3]
-    q2 = second[0] * y[0] + second[1] * y[2] + second[2] * y[4]
-    if d.entrance_loss > 0.0:
-        q1 += _excess(y[0] - y[3], near, d.entrance_loss, d)[0]
-        q2 += _excess(y[0] - y[4], far, d.entrance_loss, d)[0]
-    return q1, q2
 
 
 @compiled

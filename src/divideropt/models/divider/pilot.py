@@ -14,7 +14,7 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Formulation
-from divideropt.models.divider.kernels import fold_side, gather
+from divideropt.models.divider.groove_kernels import fold_side, gather
 
 GROOVE_FACTOR = 185.0
 """Laminar flow through an equilateral triangle of side b: Q = -b⁴/(185 μ) dP/dl, (A.3)."""

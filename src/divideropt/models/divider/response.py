@@ -22,11 +22,11 @@ from divideropt.models.divider.kernels import (
     flows_of,
     jacobian,
     rates,
-    run,
     zero_state,
 )
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.scenario import Scenario, Span
+from divideropt.models.divider.solver_kernels import run
 from divideropt.ode import ROSENBROCK, Event, SolverSettings, SolverStatus, Trajectory, integrate
 from divideropt.ode.rosenbrock import Workspace
 

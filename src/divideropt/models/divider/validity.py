@@ -5,7 +5,7 @@ Assumption 5 of section 2.3 is laminar flow in the grooves without losses at the
 
 import math
 
-from divideropt.models.divider.kernels import groove_inlets
+from divideropt.models.divider.groove_kernels import groove_inlets
 from divideropt.models.divider.response import Response
 
 LARGEST_REYNOLDS = 2000.0
