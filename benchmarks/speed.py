@@ -26,7 +26,7 @@ from divideropt.models.divider import Divider, groove_kernels, kernels, solver_s
 from divideropt.models.divider.kernels import jacobian, motion, rates
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.response import Response
-from divideropt.models.divider.solver_kernels import run
+from divideropt.models.divider.run_kernels import run
 from divideropt.ode.rosenbrock import Workspace
 from divideropt.problem import Problem
 
@@ -116,8 +116,7 @@ def by_rosenbrock(model: Divider, response: Response, start: FloatArray) -> None
     w = Workspace(9, s.max_steps)
     w.state[:] = start
     design = response.phases[-1].design
-    run(design, 0.0, 1.0, s.max_steps, w.s, w.k, w.state, w.f0, w.f, w.jac, w.slope, w.lu, w.pivots, w.U, w.u, s.rtol,
-        atol, np.inf, w.edges, w.values)  # fmt: skip
+    run(design, 0.0, 1.0, s.max_steps, w.s, w.k, w.state, w.u, w.U, s.rtol, atol, np.inf, w.edges, w.values)
 
 
 _ODEINT: Any = odeint

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from divideropt.models.divider import FORMULATIONS, parameter_set
+from divideropt.models.divider.coefficient_kernels import GROOVE_FACTOR
 from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.equilibrium import find_equilibrium, initial_guess
 from divideropt.models.divider.ideal import flow_ratio
-from divideropt.models.divider.pilot import GROOVE_FACTOR
 from divideropt.models.divider.scenario import Inputs
 from modelpages.tables import fixed, power, table
 

@@ -8,16 +8,19 @@ from divideropt.ode import compiled as module
 from divideropt.ode.compiled import compiled
 
 EVALUATE = """
+import sys
 import numpy as np
 from divideropt.models.divider import Divider, parameter_set
-from divideropt.models.divider import groove_kernels, kernels, solver_kernels, transient
-from divideropt.ode import interpolate, linear, rosenbrock
+from divideropt.models.divider.metrics import measure
 
-model = Divider()
-model.evaluate(np.array([list(parameter_set("thesis_base").values())]))
+design = parameter_set("thesis_base")
+for model in (Divider(), Divider("listing")):
+    model.evaluate(np.array([list(design.values())]))
+    measure(model.respond(design))
 dispatchers = {
     id(f): f
-    for module in (kernels, groove_kernels, solver_kernels, transient, rosenbrock, linear, interpolate)
+    for name, module in sys.modules.items()
+    if name.startswith("divideropt")
     for f in vars(module).values()
     if hasattr(f, "stats")
 }
@@ -45,8 +48,22 @@ def test_the_cache_is_in_a_folder_of_the_sources_content(monkeypatch, tmp_path) 
     first = module._folder()
     source.write_text("from divideropt.ode.compiled import compiled  # another\n")
     assert module._folder() != first
+    second = module._folder()
     (package / "other.py").write_text("nothing compiled\n")
-    assert module._folder() != first
+    assert module._folder() == second
+
+
+def test_the_constants_that_a_compiled_source_imports_are_part_of_it(monkeypatch, tmp_path) -> None:
+    # numba compiles a global in as a constant.
+    monkeypatch.setattr(module, "_PACKAGE", tmp_path)
+    (tmp_path / "ode").mkdir()
+    constants = tmp_path / "ode" / "constants.py"
+    constants.write_text("GAMMA = 1\n")
+    source = "from divideropt.ode.compiled import compiled\nfrom divideropt.ode.constants import GAMMA\n"
+    (tmp_path / "kernel.py").write_text(source)
+    before = module._folder()
+    constants.write_text("GAMMA = 2\n")
+    assert module._folder() != before
 
 
 def test_a_users_own_cache_folder_is_respected_and_nothing_else_is_touched() -> None:

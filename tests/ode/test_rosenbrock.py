@@ -19,23 +19,24 @@ def fixed_step_error(steps: int, theta: float = 1.0) -> float:
     h, t, y = 1.0 / steps, 0.0, np.array([1.0])
     work = method.Workspace(1, 1)
     for _ in range(steps):
-        work.state[:], work.f0[:], work.jac[:] = y, -2 * t * y * y, -4 * t * y[0]
-        work.slope[:] = -2 * y * y
-        work.edges[0] = t
-        work.s[:] = t, h, t + h, 0.0, h
-        work.k[:] = 0, 0, 1, 0
-        while True:
-            wanted = method.advance(
-                work.s, work.k, work.state, work.f0, work.f, work.jac, work.slope, work.lu, work.pivots,
-                work.U, work.u, 1e9, np.ones(1), -1, 0.0, work.edges, work.values,
-            )  # fmt: skip
-            if wanted != method.RATES:
-                break
-            work.f[:] = -2 * work.s[method.STAGE_TIME] * work.u**2
+        work.state[:] = y
+        work.s[:] = t, h, t + h, h
+        work.k[:] = 0, 1, 0, 0
+        matrix, slope = np.array([[-4 * t * y[0]]]), -2 * y * y
+        method._stages(lambda t, y: -2 * t * y * y, matrix, -2 * t * y * y, slope, work)
+        after = conclude_on_x(work, np.empty(0), watch=-1, rtol=1e9)
+        assert after == method.FINISHED
         values, t, y = work.values[0].copy(), t + h, work.state.copy()
     node = int(np.argmin(np.abs(method.NODES - theta)))
     place = t - h + method.NODES[node] * h
     return abs(float(values[0, node]) - 1 / (1 + place * place))
+
+
+def conclude_on_x(work, kinks, watch, rtol) -> int:
+    atol = np.ones(work.state.size)
+    return method.conclude(
+        work.s, work.k, work.state, work.u, work.U, rtol, atol, watch, np.inf, kinks, work.edges, work.values
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("theta", "order"), [(1.0, 5), (0.5, 4)])
@@ -216,3 +217,25 @@ def test_it_answers_the_call_of_the_others() -> None:
     by_name = integrate(rates, jacobian, (0.0, end), np.array(start), chosen)
     direct = integrate_by_rosenbrock(rates, jacobian, (0.0, end), np.array(start), chosen)
     np.testing.assert_array_equal(by_name.values, direct.values)
+
+
+def test_a_step_over_a_kink_is_done_again_to_end_there() -> None:
+    # x' = 1 up to x = 0.3, and 2 beyond: a step over the kink has an error that its stages may all miss.
+    kink, times = 0.3, []
+    work = method.Workspace(1, 100)
+    work.edges[0] = 0.0
+    method.begin(work.s, work.k, 0.0, 1.0, 100, work.state, np.ones(1), 1e-4, np.ones(1))
+
+    def rates(t, y):
+        return np.where(y < kink, 1.0, 2.0)
+
+    work.s[method.STEP] = 0.25
+    while True:
+        method._stages(rates, np.zeros((1, 1)), rates(0.0, work.state), np.zeros(1), work)
+        after = conclude_on_x(work, np.array([kink]), watch=0, rtol=1e9)
+        if after != method.RETRY:
+            times.append(float(work.s[method.TIME]))
+        if after not in (method.NEXT, method.RETRY):
+            break
+    assert min(abs(time - kink) for time in times) < 1e-3 * 0.25
+    assert work.state[0] == pytest.approx(kink + 2 * (1 - kink), rel=1e-3)

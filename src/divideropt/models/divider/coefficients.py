@@ -1,15 +1,16 @@
-"""From parameters and inputs to the record that the equations of motion read."""
+"""From parameters and inputs by name to the records that the compiled functions read."""
 
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass
 
+import numpy as np
+
+from divideropt.models.divider.coefficient_kernels import apply_span, prepare
 from divideropt.models.divider.formulations import Formulation
-from divideropt.models.divider.geometry import Geometry, derive_geometry
-from divideropt.models.divider.groove_kernels import fold_pilot
-from divideropt.models.divider.pilot import ENTRANCE_SHARE, Groove, leakage_sign
-from divideropt.models.divider.record import Design, record_of
-from divideropt.models.divider.scenario import Inputs, Span, load_areas
+from divideropt.models.divider.geometry import Geometry, geometry_of, parameter_row
+from divideropt.models.divider.pilot import Groove, groove_of, leakage_sign
+from divideropt.models.divider.record import COEFFICIENTS, GEOMETRY, OPTIONS, RULES, SPAN, Design, Records, blank
+from divideropt.models.divider.scenario import Inputs, Scenario, Span
 
 
 @dataclass(frozen=True)
@@ -19,20 +20,33 @@ class Valve:
     Attributes:
         parameters: Every parameter by name, SI.
         formulation: Which reading of the valve.
-        geometry: What the parameters make.
-        groove: The pilot groove.
+        row: The parameters, `PARAMETER_ROW`, shape (1,).
+        derived: What they make, `GEOMETRY`, shape (1,).
     """
 
     parameters: Mapping[str, float]
     formulation: Formulation
-    geometry: Geometry
-    groove: Groove
+    row: Records
+    derived: Records
+    _blank: Design
 
     @classmethod
     def of(cls, parameters: Mapping[str, float], formulation: Formulation) -> "Valve":
         """Derive geometry and groove."""
-        geometry = derive_geometry(parameters, holes=formulation.arc_holes, stem=formulation.stem)
-        return cls(parameters, formulation, geometry, Groove.of(parameters))
+        row = parameter_row(parameters)
+        derived, design = blank(GEOMETRY), blank(COEFFICIENTS)
+        prepare(row, options_record(formulation), derived, design)
+        return cls(parameters, formulation, row, derived, design)
+
+    @property
+    def geometry(self) -> Geometry:
+        """What the parameters make."""
+        return geometry_of(self.derived)
+
+    @property
+    def groove(self) -> Groove:
+        """The pilot groove."""
+        return groove_of(self.derived)
 
     def under(self, inputs: Inputs, sized_for: float | None = None) -> Design:
         """Return the record under inputs that stay.
@@ -56,89 +70,45 @@ class Valve:
         Returns:
             `COEFFICIENTS`, shape (1,).
         """
-        values = self._valve() | self._pilot() | self._options() | self._inputs(span, sized_for)
-        design = record_of(values)
-        fold_pilot(design[0].spool_position, design[0])
+        design = self._blank.copy()
+        apply_span(self.row, span_records([span]), 0, sized_for, design)
         return design
 
-    def _valve(self) -> dict[str, float]:
-        p, g = self.parameters, self.geometry
-        root = math.sqrt(2 / p["density"])
-        length = p["damping_length"] if self.formulation.transient_force else 0.0
-        return {
-            "source_gain": p["bulk_modulus"] / p["source_volume"],
-            "chamber_gain": p["bulk_modulus"] / g.chamber_volume,
-            "load_gain": p["bulk_modulus"] / p["load_volume"],
-            "bulk_modulus": p["bulk_modulus"],
-            "end_volume": g.end_volume,
-            "end_area": g.end_area,
-            "mass": g.mass,
-            "viscous_friction": g.viscous_friction,
-            "coulomb_friction": p["coulomb_friction"],
-            "fixed_1": p["fixed_discharge"] * g.fixed_area_1 * root,
-            "fixed_2": p["fixed_discharge"] * g.fixed_area_2 * root,
-            "variable": p["variable_discharge"] * root,
-            "transient": length * p["variable_discharge"] * math.sqrt(2 * p["density"]),
-            "port_radius": g.port_radius,
-            "port_offset": g.port_offset,
-            "stop_position": g.stop_position,
-            "rim_thickness": p["rim_thickness"],
-            "seal_leakage": g.seal_leakage if self.formulation.end_seals else 0.0,
-        }
 
-    def _pilot(self) -> dict[str, float]:
-        groove, loss = self.groove, 0.0
-        if self.formulation.groove_loss:
-            loss = self.parameters["groove_loss_factor"] * self.parameters["density"] / (2 * groove.area**2)
-        return {
-            "groove_conductance": groove.conductance,
-            "groove_length": groove.length,
-            "groove_leakage": groove.leakage,
-            "groove_angle": groove.angle,
-            "entrance_loss": ENTRANCE_SHARE * loss,
-            "exit_loss": (1 - ENTRANCE_SHARE) * loss,
-        }
-
-    def _options(self) -> dict[str, float]:
-        f = self.formulation
-        return {
-            "pilot": f.pilot,
-            "leakage_sign": leakage_sign(f),
-            "pilot_bypass": f.pilot_bypass,
-            "arc_holes": f.arc_holes,
-            "chord_holes": f.chord_holes,
-            "rim_holes": f.rim_holes,
-            "orifice_law": f.orifice_law,
-            "port_range": f.port_range,
-            "stop": f.stop,
-            "pressure_floor": f.pressure_floor,
-        }
-
-    def _inputs(self, span: Span, sized_for: float) -> dict[str, float]:
-        p, inputs = self.parameters, span.inputs
-        areas = load_areas(p, inputs.load_pressures, sized_for)
-        first, second = (p["load_discharge"] * area * math.sqrt(2 / p["density"]) for area in areas)
-        values = {
-            "source_flow": inputs.source_flow,
-            "spool_position": inputs.spool_position,
-            "load_flow": sized_for / 2,
-            "load_1": first,
-            "load_2": second,
-        }
-        return values | _motion(span) if span.moving else values
+def options_record(formulation: Formulation) -> Records:
+    """Return `OPTIONS` of a formulation, shape (1,)."""
+    names = [name for name in OPTIONS.names or () if name != "leakage_sign"]
+    values = {name: float(getattr(formulation, name)) for name in names}
+    values["leakage_sign"] = leakage_sign(formulation)
+    return np.array([tuple(values[name] for name in OPTIONS.names or ())], dtype=OPTIONS)
 
 
-def _motion(span: Span) -> dict[str, float]:
-    """How the inputs move over a span."""
-    duration, before, after = span.end - span.begin, span.inputs, span.final_inputs
-    rates = [(b - a) / duration for a, b in zip(before.load_pressures, after.load_pressures, strict=True)]
-    return {
-        "moving": 1,
-        "begin": span.begin,
-        "source_flow_rate": (after.source_flow - before.source_flow) / duration,
-        "spool_position_rate": (after.spool_position - before.spool_position) / duration,
-        "load_pressure_1": before.load_pressures[0],
-        "load_pressure_2": before.load_pressures[1],
-        "load_pressure_1_rate": rates[0],
-        "load_pressure_2_rate": rates[1],
-    }
+def span_records(spans: Sequence[Span]) -> Records:
+    """Return `SPAN` of the stretches of a scenario, shape (p,)."""
+    rows = [
+        (span.begin, span.end, span.event, span.moving, *_flat(span.inputs), *_flat(span.final_inputs))
+        for span in spans
+    ]
+    return np.array(rows, dtype=SPAN)
+
+
+def rules_record(scenario: Scenario) -> Records:
+    """Return `RULES` of a scenario, shape (1,)."""
+    return np.array(
+        [
+            (
+                scenario.source_flow,
+                scenario.settled,
+                len(scenario.events),
+                scenario.last_event_time,
+                scenario.end_time,
+                scenario.accumulation_time,
+            )
+        ],
+        dtype=RULES,
+    )
+
+
+def _flat(inputs: Inputs) -> tuple[float, float, float, float]:
+    flow, position, (first, second) = astuple(inputs)
+    return flow, position, first, second

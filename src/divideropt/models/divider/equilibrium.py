@@ -11,33 +11,24 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
-from divideropt.models.divider.formulations import PortRange, Stop
-from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, jacobian, rates
+from divideropt.models.divider.formulations import Stop
+from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
 from divideropt.models.divider.record import Design
-from divideropt.models.divider.solver_kernels import centred_state, newton, residual_scales
+from divideropt.models.divider.rest_kernels import (
+    BALANCES,
+    FREE,
+    STATE_SIZES,
+    centred_state,
+    hold,
+    margin,
+    polish,
+    residual_scales,
+)
+from divideropt.models.divider.rest_kernels import reach as farthest
 from divideropt.ode import SolverSettings, integrate
-
-TOLERANCE = 1e-13
-"""Residual at which Newton stops: flows over the source flow, forces over `FORCE_SCALE` times the end area."""
-
-LOOSEST = 1e3
-"""Where no step improves it any more, a residual of so many times that will do."""
-
-ITERATIONS = 60
-"""Budget of Newton iterations; from the end of a response two or three suffice."""
-
-HALVINGS = 12
-"""How often a Newton step is halved before it is taken as lost."""
-
-FORCE_SCALE = 1e6
-"""Pressure [Pa] that scales a force residual."""
-
-HIGHEST_PRESSURE = 5e7
-"""No end chamber presses the spool into its stop with more than this [Pa]."""
 
 RELAXATION_TIME = 2.0
 """How long a valve is let go [s]: twenty times what it needs to settle."""
@@ -49,13 +40,7 @@ RELAXATION_STEPS = 1500
 BRACKETS = 64
 """Intervals of the stroke searched for a sign change of the force where Newton fails."""
 
-_SIZES = np.array([1e7, 1e7, 1e7, 1e7, 1e7, 1e-2, 1e-3, 1e7, 1e7])
-"""What the hybrid method counts the states in, so that its steps are alike."""
-
 _XDOT, _X = STATES.index("xdot"), STATES.index("x")
-_FREE = np.array([i for i in range(N_STATES) if i != _XDOT])
-_BALANCES = np.array([i for i in range(N_STATES) if i != _X])
-_PRESSURES = np.array([i for i in range(N_STATES) if i not in (_XDOT, _X)])
 
 
 @dataclass(frozen=True)
@@ -141,11 +126,7 @@ def initial_guess(design: Design) -> FloatArray:
 
 def stability_margin(design: Design, state: FloatArray) -> float:
     """Return minus the largest real part of the Jacobian's eigenvalues [1/s], without Coulomb friction."""
-    free = without_friction(design) if _field(design, "coulomb_friction") else design
-    matrix = jacobian(0.0, state, free)
-    if not np.isfinite(matrix).all():
-        return float("nan")
-    return float(-np.linalg.eigvals(matrix).real.max())
+    return float(margin(design, state))
 
 
 def without_friction(design: Design, extra_force: float = 0.0) -> Design:
@@ -158,28 +139,29 @@ def without_friction(design: Design, extra_force: float = 0.0) -> Design:
 
 def _polished(design: Design, start: FloatArray) -> Equilibrium | None:
     """Go to the root by Newton, if it is within reach."""
-    found = _newton(design, start, _FREE, _BALANCES)
-    return found if found is not None and abs(found.state[_X]) <= _reach(design) else None
+    y = start.copy()
+    size = float(polish(design, y))
+    return None if np.isnan(size) else Equilibrium(y, size, "newton")
 
 
 def _hybrid(design: Design, start: FloatArray) -> Equilibrium | None:
     """Let SciPy's modification of Powell's hybrid method come near the root, then go to it by Newton."""
     y = start.copy()
     y[_XDOT] = 0.0
-    scale = _residual_scales(design, y)[_BALANCES]
+    scale = residual_scales(design, y)[BALANCES]
 
     def residual(unknowns: FloatArray) -> FloatArray:
-        y[_FREE] = unknowns * _SIZES[_FREE]
-        return np.asarray(rates(0.0, y, design)[_BALANCES] / scale)
+        y[FREE] = unknowns * STATE_SIZES[FREE]
+        return np.asarray(rates(0.0, y, design)[BALANCES] / scale)
 
     def slopes(unknowns: FloatArray) -> FloatArray:
-        y[_FREE] = unknowns * _SIZES[_FREE]
-        return np.asarray(jacobian(0.0, y, design)[np.ix_(_BALANCES, _FREE)] / scale[:, None] * _SIZES[_FREE])
+        y[FREE] = unknowns * STATE_SIZES[FREE]
+        return np.asarray(jacobian(0.0, y, design)[np.ix_(BALANCES, FREE)] / scale[:, None] * STATE_SIZES[FREE])
 
-    solution = root(residual, y[_FREE] / _SIZES[_FREE], jac=slopes, method="hybr")
+    solution = root(residual, y[FREE] / STATE_SIZES[FREE], jac=slopes, method="hybr")
     if not np.isfinite(solution.x).all():
         return None
-    y[_FREE] = solution.x * _SIZES[_FREE]
+    y[FREE] = solution.x * STATE_SIZES[FREE]
     return _polished(design, y)
 
 
@@ -196,19 +178,6 @@ def _let_go(design: Design, start: FloatArray) -> Equilibrium | None:
         settings,
     )
     return _polished(design, run.final)
-
-
-def _newton(
-    design: Design, start: FloatArray, unknowns: NDArray[np.intp], balances: NDArray[np.intp]
-) -> Equilibrium | None:
-    """Solve the balances for the unknowns by damped Newton steps; the other states stay as in `start`."""
-    y = start.copy()
-    y[_XDOT] = 0.0
-    scale = _residual_scales(design, y)[balances]
-    size = newton(
-        design, y, unknowns, balances, scale, _reach(design), TOLERANCE, LOOSEST * TOLERANCE, ITERATIONS, HALVINGS
-    )
-    return None if np.isnan(size) else Equilibrium(y, size, "newton")
 
 
 def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
@@ -230,7 +199,7 @@ def _profile(
     design: Design, count: int, between: tuple[float, float] | None
 ) -> tuple[FloatArray, list[FloatArray | None], FloatArray]:
     """Places over the stroke, the states with the spool held there, and the force on it per mass."""
-    reach = _reach(design)
+    reach = float(farthest(design))
     places = np.linspace(*(between or (-reach, reach)), count)
     held = _held_states(design, places)
     return places, held, np.array([np.nan if y is None else rates(0.0, y, design)[_XDOT] for y in held])
@@ -267,7 +236,8 @@ def _hold(design: Design, guess: FloatArray, x: float) -> FloatArray | None:
 def _held(design: Design, guess: FloatArray, x: float) -> Equilibrium | None:
     y = guess.copy()
     y[_X] = x
-    return _newton(design, y, _PRESSURES, _PRESSURES)
+    size = float(hold(design, y))
+    return None if np.isnan(size) else Equilibrium(y, size, "newton")
 
 
 def _force_at(design: Design, guess: FloatArray, x: float) -> float:
@@ -275,24 +245,9 @@ def _force_at(design: Design, guess: FloatArray, x: float) -> float:
     return float("nan") if state is None else float(rates(0.0, state, design)[_XDOT])
 
 
-def _reach(design: Design) -> float:
-    """How far an equilibrium is sought: the stop and what its spring gives, or where the ports end."""
-    if _field(design, "port_range") == PortRange.PRINTED:  # beyond, the equations give no number
-        return _field(design, "port_radius") - abs(_field(design, "port_offset"))
-    stop = _field(design, "stop_position")
-    if _field(design, "stop") != Stop.CONTACT:
-        return stop
-    return stop + HIGHEST_PRESSURE * _field(design, "end_area") / STOP_STIFFNESS
-
-
 def _field(design: Design, name: str) -> float:
     """One number of a record; by an attribute it would take ten times as long."""
     return float(design[name][0])
-
-
-def _residual_scales(design: Design, y: FloatArray) -> FloatArray:
-    """What divides each rate: that of a pressure as if the source flow filled its volume."""
-    return np.asarray(residual_scales(design, y, FORCE_SCALE))
 
 
 _SEARCHES: Mapping[str, Callable[[Design, FloatArray], Equilibrium | None]] = {

@@ -1,14 +1,12 @@
 """Dimensions and coefficients derived from the parameters: (3.13)–(3.22), as coded in C.1."""
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
-STEEL_DENSITY = 7870.0
-"""Density of the spool [kg/m^3], from C.1."""
+import numpy as np
 
-STROKE_MARGIN = 1.3
-"""Stop position over the position at which port 1 is just fully open, from C.1."""
+from divideropt.models.divider.coefficient_kernels import derive
+from divideropt.models.divider.record import GEOMETRY, PARAMETER_ROW, Records, blank
 
 
 @dataclass(frozen=True)
@@ -61,38 +59,16 @@ def derive_geometry(p: Mapping[str, float], *, holes: int, stem: bool = True) ->
     Returns:
         The derived dimensions.
     """
-    r = p["spool_radius"]
-    viscosity = p["kinematic_viscosity"] * p["density"]
-    land_length = p["land_length_ratio"] * p["land_distance"]
-    spool_length = land_length / p["land_fraction"]
-    stem_radius = r * p["stem_ratio"]
-    end_area = math.pi * (r**2 - (stem_radius**2 if stem else 0.0))
-    drop, fixed_drop = p["total_pressure_drop"], p["fixed_drop_ratio"] * p["total_pressure_drop"]
-    fixed_area = _orifice_area(p["design_flow"], p["fixed_discharge"], p["density"], fixed_drop)
-    share_1 = 2 * p["fixed_area_ratio"] / (1 + p["fixed_area_ratio"])
-    port_area = _orifice_area(p["design_flow"], p["variable_discharge"], p["density"], drop - fixed_drop)
-    port_radius = math.sqrt(port_area / math.pi)
-    port_offset = port_radius * (1 - 2 * p["centred_opening"])
-    stop_position = STROKE_MARGIN * (port_offset + port_radius)
-    return Geometry(
-        viscosity=viscosity,
-        stem_radius=stem_radius,
-        end_area=end_area,
-        mass=p["mass_ratio"] * r**2 * math.pi * spool_length * STEEL_DENSITY,
-        spool_length=spool_length,
-        viscous_friction=2 * math.pi * r * land_length * viscosity / p["radial_clearance"],
-        fixed_area_1=fixed_area * share_1,
-        fixed_area_2=fixed_area * (2 - share_1),
-        port_radius=port_radius,
-        port_offset=port_offset,
-        stop_position=stop_position,
-        end_volume=(p["end_clearance"] + stop_position) * end_area,
-        chamber_volume=math.pi * (r**2 - (r / 2) ** 2) * p["chamber_length"],
-        seal_leakage=stem_radius * math.pi * p["radial_clearance"] ** 3 / (6 * viscosity * p["seal_length"]),
-        open_drop=fixed_drop + (drop - fixed_drop) / holes**2,
-    )
+    derived = blank(GEOMETRY)
+    derive(parameter_row(p), float(holes), int(stem), derived)
+    return geometry_of(derived)
 
 
-def _orifice_area(flow: float, discharge: float, density: float, drop: float) -> float:
-    """Area [m^2] that passes a flow [m^3/s] at a drop [Pa], (3.17)."""
-    return flow / (discharge * math.sqrt(2 / density * drop))
+def geometry_of(derived: Records) -> Geometry:
+    """Return the geometry of a record of `GEOMETRY`, shape (1,)."""
+    return Geometry(**{field.name: float(derived[field.name][0]) for field in fields(Geometry)})
+
+
+def parameter_row(p: Mapping[str, float]) -> Records:
+    """Return every parameter, given by name, as `PARAMETER_ROW`, shape (1,)."""
+    return np.array([tuple(p[name] for name in PARAMETER_ROW.names or ())], dtype=PARAMETER_ROW)

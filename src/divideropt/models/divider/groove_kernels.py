@@ -50,12 +50,13 @@ def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # 
         to_end, to_chamber = conductance / tanh_near / 2.0, conductance * tanh_near / 2.0
         out = conductance / tanh_far / 2.0
         along = leakage * length * tanh_near
-        _fill(rows, 0, to_end + to_chamber, -to_chamber, -to_end)
-        _fill(rows, 1, to_end - to_chamber, to_chamber, -to_end)
-        _fill(rows, 2, to_end - to_chamber, to_chamber + out, -to_end - out)
-        _fill(rows, 3, 0.0, -out, out)
-        _fill(rows, 4, -along, along - across, across)
-        _fill(rows, 5, along, -along - across, across)
+        # Element by element: an array expression takes numba seconds to compile.
+        rows[0, 0], rows[0, 1], rows[0, 2] = to_end + to_chamber, -to_chamber, -to_end
+        rows[1, 0], rows[1, 1], rows[1, 2] = to_end - to_chamber, to_chamber, -to_end
+        rows[2, 0], rows[2, 1], rows[2, 2] = rows[1, 0], to_chamber + out, -to_end - out
+        rows[3, 0], rows[3, 1], rows[3, 2] = 0.0, -out, out
+        rows[4, 0], rows[4, 1], rows[4, 2] = -along, along - across, across
+        rows[5, 0], rows[5, 1], rows[5, 2] = along, -along - across, across
         return rows
     # (2.20)-(2.33), (2.42) about the chambers' mean pressure, end flows as (A.29), (A.30); or, as coded in C.3,
     # (A.22)-(A.25), (A.31)-(A.38) about zero.
@@ -81,12 +82,6 @@ def fold_side(pilot, conductance, length, leakage, near, far, leakage_sign):  # 
         rows[4, i] = across * (pb - pa) + leakage_sign * leakage * length * profile
         rows[5, i] = across * (pb - pa) - leakage * length * profile
     return rows
-
-
-@compiled
-def _fill(rows, i, ps, pa, pb):  # type: ignore[no-untyped-def]
-    """Fill a row; element by element, since an array expression takes numba seconds to compile."""
-    rows[i, 0], rows[i, 1], rows[i, 2] = ps, pa, pb
 
 
 @compiled

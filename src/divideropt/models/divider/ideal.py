@@ -6,6 +6,7 @@ from typing import overload
 import numpy as np
 
 from divideropt.models.base import FloatArray
+from divideropt.ode.compiled import compiled
 
 
 @overload
@@ -45,13 +46,15 @@ def flow_fraction(spool_position: float | FloatArray, area_ratio: float) -> floa
     return ratio / (ratio + 1.0)
 
 
-def desired_flows(spool_position: float, area_ratio: float, source_flow: float) -> tuple[float, float]:
-    """Return QL1d and QL2d [m^3/s]: the ideal ratio (2.6) of the whole source flow, (2.7).
+@compiled
+def desired_flows(spool_position, area_ratio, source_flow):  # type: ignore[no-untyped-def]
+    """Return QL1d and QL2d [m^3/s]: the ideal ratio (2.6) of the whole source flow, (2.7); compiled.
 
     Args:
         spool_position: φ/φ0, strictly between 0 and 1.
         area_ratio: Ao1/Ao2, with equal discharge coefficients.
         source_flow: Qs [m^3/s].
     """
-    first = source_flow * flow_fraction(spool_position, area_ratio)
+    ratio = area_ratio * math.sqrt(1.0 / spool_position - 1.0)
+    first = source_flow * (ratio / (ratio + 1.0))
     return first, source_flow - first

@@ -39,6 +39,9 @@ STOP_DAMPING = 5e3
 STOP_ONSET = 1e-7
 """Depth [m] over which the damping sets in, so that the force is continuous at the touch."""
 
+_STRETCHES = np.array([[0, 3], [3, 1], [0, 4], [4, 2]])
+"""The balances between which the stretches of the grooves lie."""
+
 SMALLEST_VOLUME = 1e-15
 """What C.3 puts for an end chamber that has vanished [m^3]."""
 
@@ -56,8 +59,7 @@ def rates(t, y, design):  # type: ignore[no-untyped-def]
         Rates, shape (9,).
     """
     out = np.empty(N_STATES)
-    jac = np.zeros((N_STATES, N_STATES))
-    motion(t, y, design[0], out, jac)
+    motion(t, y, design[0], out, None)
     return out
 
 
@@ -79,7 +81,8 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
         y: State, shape (9,).
         d: A record of `COEFFICIENTS`.
         out: Receives the rates, shape (9,).
-        jac: Receives the Jacobian, shape (9, 9); must hold zeros.
+        jac: Receives the Jacobian, shape (9, 9), where it can hold something else than zero, as `pattern.py` has
+            it; or None, for which another function is compiled that does without the slopes.
     """
     Ps, Ps_ = _floored(y[0], d.pressure_floor)
     Pa1, Pa1_ = _floored(y[1], d.pressure_floor)
@@ -132,110 +135,108 @@ def motion(t, y, d, out, jac):  # type: ignore[no-untyped-def]
     f, f_ = _root(PL2, d.orifice_law)
     QLo2, QLo2_ = load_2 * f, load_2 * f_
 
-    # Source and flow chambers, (2.8), (2.11), (2.12).
-    g = d.source_gain
-    out[0] = g * (
-        source_flow - Qs1 - Qs2
-        + (p1[0, 0] * Ps + p1[0, 1] * Pa1 + p1[0, 2] * Pb1)
-        + (p2[0, 0] * Ps + p2[0, 1] * Pa2 + p2[0, 2] * Pb2)
-    )  # fmt: skip
-    jac[0, 0] = g * (-Qs1_ - Qs2_ + p1[0, 0] + p2[0, 0]) * Ps_
-    jac[0, 1] = g * (Qs1_ + p1[0, 1]) * Pa1_
-    jac[0, 2] = g * (Qs2_ + p2[0, 1]) * Pa2_
-    jac[0, 3] = g * p1[0, 2] * Pb1_
-    jac[0, 4] = g * p2[0, 2] * Pb2_
+    # What the pilot stage adds to supply, flow chambers and end chambers.
+    supply_1, chamber_1, end_1 = _pilot_flows(p1, Ps, Pa1, Pb1)
+    supply_2, chamber_2, end_2 = _pilot_flows(p2, Ps, Pa2, Pb2)
 
-    g = d.chamber_gain
-    out[1] = g * (Qs1 - QL1 + (p1[1, 0] * Ps + p1[1, 1] * Pa1 + p1[1, 2] * Pb1))
-    jac[1, 0] = g * (Qs1_ + p1[1, 0]) * Ps_
-    jac[1, 1] = g * (-Qs1_ - QL1_ + p1[1, 1]) * Pa1_
-    jac[1, 3] = g * p1[1, 2] * Pb1_
-    jac[1, 6] = -g * QL1_x
-    jac[1, 7] = g * QL1_ * PL1_
-    out[2] = g * (Qs2 - QL2 + (p2[1, 0] * Ps + p2[1, 1] * Pa2 + p2[1, 2] * Pb2))
-    jac[2, 0] = g * (Qs2_ + p2[1, 0]) * Ps_
-    jac[2, 2] = g * (-Qs2_ - QL2_ + p2[1, 1]) * Pa2_
-    jac[2, 4] = g * p2[1, 2] * Pb2_
-    jac[2, 6] = -g * QL2_x
-    jac[2, 8] = g * QL2_ * PL2_
-
-    # End chambers, (2.38)–(2.41); the end seals leak to tank.
+    # Source and flow chambers, (2.8), (2.11), (2.12); end chambers, (2.38)–(2.41), whose seals leak to tank; load
+    # lines, (3.1), (3.2).
     swept = xdot * d.end_area
     Vb1 = max(d.end_volume + d.end_area * x, SMALLEST_VOLUME)
-    g = d.bulk_modulus / Vb1
-    out[3] = g * (p1[2, 0] * Ps + p1[2, 1] * Pa1 + p1[2, 2] * Pb1 - swept - d.seal_leakage * Pb1)
-    jac[3, 0] = g * p1[2, 0] * Ps_
-    jac[3, 1] = g * p1[2, 1] * Pa1_
-    jac[3, 3] = g * (p1[2, 2] - d.seal_leakage) * Pb1_
-    jac[3, 5] = -g * d.end_area * x_
-    jac[3, 6] = -out[3] * d.end_area / Vb1 * x_
     Vb2 = max(d.end_volume - d.end_area * x, SMALLEST_VOLUME)
-    g = d.bulk_modulus / Vb2
-    out[4] = g * (p2[2, 0] * Ps + p2[2, 1] * Pa2 + p2[2, 2] * Pb2 + swept - d.seal_leakage * Pb2)
-    jac[4, 0] = g * p2[2, 0] * Ps_
-    jac[4, 2] = g * p2[2, 1] * Pa2_
-    jac[4, 4] = g * (p2[2, 2] - d.seal_leakage) * Pb2_
-    jac[4, 5] = g * d.end_area * x_
-    jac[4, 6] = out[4] * d.end_area / Vb2 * x_
+    source, chamber, load = d.source_gain, d.chamber_gain, d.load_gain
+    end_gain_1, end_gain_2 = d.bulk_modulus / Vb1, d.bulk_modulus / Vb2
+    out[0] = source * (source_flow - Qs1 - Qs2 + supply_1 + supply_2)
+    out[1] = chamber * (Qs1 - QL1 + chamber_1)
+    out[2] = chamber * (Qs2 - QL2 + chamber_2)
+    out[3] = end_gain_1 * (end_1 - swept - d.seal_leakage * Pb1)
+    out[4] = end_gain_2 * (end_2 + swept - d.seal_leakage * Pb2)
+    out[7] = load * (QL1 - QLo1)
+    out[8] = load * (QL2 - QLo2)
+
+    # The spool, (2.17), with C.3's transient flow force, both jets braking.
+    drag_Pa1_, drag_Pa2_, drag_PL1_, drag_PL2_ = Pa1_, Pa2_, PL1_, PL2_
+    ends_1_, ends_2_, jets = Pb1_, Pb2_, (Pa1_, Pa2_, PL1_, PL2_)
+    P1, P2, E1, E2, L1, L2 = Pa1, Pa2, Pb1, Pb2, PL1, PL2
+    if d.pressure_floor == 0:  # forces see the pressures as they are
+        P1, P2, E1, E2, L1, L2 = y[1], y[2], y[3], y[4], y[7], y[8]
+        ends_1_, ends_2_, jets = 1.0, 1.0, (1.0, 1.0, 1.0, 1.0)
+    rim = d.rim_thickness / 2.0
+    drag = d.transient * (w1 * root_1 + w2 * root_2)
+    friction, friction_v = _coulomb_friction(xdot, d)
+    stop, stop_x, stop_v = _stop_force(x, xdot, d)
+    m = d.mass
+    out[5] = (
+        (E1 - E2) * d.end_area
+        + rim * w1 * (L1 - P1)
+        - rim * w2 * (L2 - P2)
+        - (d.viscous_friction + drag) * xdot
+        - friction
+        + d.extra_force
+        + stop
+    ) / m
+    out[6] = xdot
+
+    if jac is not None:
+        jac[0, 0] = source * (-Qs1_ - Qs2_ + p1[0, 0] + p2[0, 0]) * Ps_
+        jac[0, 1] = source * (Qs1_ + p1[0, 1]) * Pa1_
+        jac[0, 2] = source * (Qs2_ + p2[0, 1]) * Pa2_
+        jac[0, 3] = source * p1[0, 2] * Pb1_
+        jac[0, 4] = source * p2[0, 2] * Pb2_
+
+        jac[1, 0] = chamber * (Qs1_ + p1[1, 0]) * Ps_
+        jac[1, 1] = chamber * (-Qs1_ - QL1_ + p1[1, 1]) * Pa1_
+        jac[1, 3] = chamber * p1[1, 2] * Pb1_
+        jac[1, 6] = -chamber * QL1_x
+        jac[1, 7] = chamber * QL1_ * PL1_
+        jac[2, 0] = chamber * (Qs2_ + p2[1, 0]) * Ps_
+        jac[2, 2] = chamber * (-Qs2_ - QL2_ + p2[1, 1]) * Pa2_
+        jac[2, 4] = chamber * p2[1, 2] * Pb2_
+        jac[2, 6] = -chamber * QL2_x
+        jac[2, 8] = chamber * QL2_ * PL2_
+
+        jac[3, 0] = end_gain_1 * p1[2, 0] * Ps_
+        jac[3, 1] = end_gain_1 * p1[2, 1] * Pa1_
+        jac[3, 3] = end_gain_1 * (p1[2, 2] - d.seal_leakage) * Pb1_
+        jac[3, 5] = -end_gain_1 * d.end_area * x_
+        jac[3, 6] = -out[3] * d.end_area / Vb1 * x_
+        jac[4, 0] = end_gain_2 * p2[2, 0] * Ps_
+        jac[4, 2] = end_gain_2 * p2[2, 1] * Pa2_
+        jac[4, 4] = end_gain_2 * (p2[2, 2] - d.seal_leakage) * Pb2_
+        jac[4, 5] = end_gain_2 * d.end_area * x_
+        jac[4, 6] = out[4] * d.end_area / Vb2 * x_
+
+        jac[7, 1] = load * QL1_ * Pa1_
+        jac[7, 6] = load * QL1_x
+        jac[7, 7] = load * (-QL1_ - QLo1_) * PL1_
+        jac[8, 2] = load * QL2_ * Pa2_
+        jac[8, 6] = load * QL2_x
+        jac[8, 8] = load * (-QL2_ - QLo2_) * PL2_
+
+        jac[5, 1] = (-rim * w1 * jets[0] - d.transient * w1 * root_1_ * xdot * drag_Pa1_) / m
+        jac[5, 2] = (rim * w2 * jets[1] - d.transient * w2 * root_2_ * xdot * drag_Pa2_) / m
+        jac[5, 3] = d.end_area / m * ends_1_
+        jac[5, 4] = -d.end_area / m * ends_2_
+        jac[5, 5] = (-d.viscous_friction - drag - friction_v + stop_v) / m * x_
+        brake_x = d.transient * (w1_x * root_1 + w2_x * root_2) * xdot
+        jac[5, 6] = (rim * w1_x * (L1 - P1) - rim * w2_x * (L2 - P2) - brake_x + stop_x) / m
+        jac[5, 7] = (rim * w1 * jets[2] + d.transient * w1 * root_1_ * xdot * drag_PL1_) / m
+        jac[5, 8] = (-rim * w2 * jets[3] + d.transient * w2 * root_2_ * xdot * drag_PL2_) / m
+        jac[6, 5] = x_
 
     # What a groove's entrance and exit take off the flows through it.
     if d.entrance_loss > 0.0:
         near, far = position * d.groove_angle, (1.0 - position) * d.groove_angle
+        bypass_0, bypass_a = d.pilot_bypass * source, d.pilot_bypass * chamber
+        fades_1, fades_2 = d.end_area / Vb1 * x_, -d.end_area / Vb2 * x_
         e, e_ = groove_excess(Ps - Pb1, near, d.entrance_loss, d)
-        _carry(e, e_, 0, 3, Ps_, Pb1_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb1, out, jac)
-        jac[3, 6] -= 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
+        _carry(e, e_, _STRETCHES[0], (Ps_, Pb1_), (bypass_0, end_gain_1), (0.0, fades_1), out, jac)
         e, e_ = groove_excess(Pb1 - Pa1, far, d.exit_loss, d)
-        _carry(e, e_, 3, 1, Pb1_, Pa1_, d.bulk_modulus / Vb1, d.pilot_bypass * d.chamber_gain, out, jac)
-        jac[3, 6] += 2.0 * e * d.bulk_modulus / Vb1 * d.end_area / Vb1 * x_
+        _carry(e, e_, _STRETCHES[1], (Pb1_, Pa1_), (end_gain_1, bypass_a), (fades_1, 0.0), out, jac)
         e, e_ = groove_excess(Ps - Pb2, far, d.entrance_loss, d)
-        _carry(e, e_, 0, 4, Ps_, Pb2_, d.pilot_bypass * d.source_gain, d.bulk_modulus / Vb2, out, jac)
-        jac[4, 6] += 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
+        _carry(e, e_, _STRETCHES[2], (Ps_, Pb2_), (bypass_0, end_gain_2), (0.0, fades_2), out, jac)
         e, e_ = groove_excess(Pb2 - Pa2, near, d.exit_loss, d)
-        _carry(e, e_, 4, 2, Pb2_, Pa2_, d.bulk_modulus / Vb2, d.pilot_bypass * d.chamber_gain, out, jac)
-        jac[4, 6] -= 2.0 * e * d.bulk_modulus / Vb2 * d.end_area / Vb2 * x_
-
-    # Load lines, (3.1), (3.2).
-    g = d.load_gain
-    out[7] = g * (QL1 - QLo1)
-    jac[7, 1] = g * QL1_ * Pa1_
-    jac[7, 6] = g * QL1_x
-    jac[7, 7] = g * (-QL1_ - QLo1_) * PL1_
-    out[8] = g * (QL2 - QLo2)
-    jac[8, 2] = g * QL2_ * Pa2_
-    jac[8, 6] = g * QL2_x
-    jac[8, 8] = g * (-QL2_ - QLo2_) * PL2_
-
-    # The spool, (2.17), with C.3's transient flow force, both jets braking.
-    drag_Pa1_, drag_Pa2_, drag_PL1_, drag_PL2_ = Pa1_, Pa2_, PL1_, PL2_
-    if d.pressure_floor == 0:  # forces see the pressures as they are
-        Pa1, Pa2, Pb1, Pb2, PL1, PL2 = y[1], y[2], y[3], y[4], y[7], y[8]
-        Pa1_, Pa2_, Pb1_, Pb2_, PL1_, PL2_ = 1.0, 1.0, 1.0, 1.0, 1.0, 1.0
-    rim = d.rim_thickness / 2.0
-    drag = d.transient * (w1 * root_1 + w2 * root_2)
-    friction = math.tanh(xdot / FRICTION_VELOCITY)
-    stop, stop_x, stop_v = _stop_force(x, xdot, d)
-    m = d.mass
-    out[5] = (
-        (Pb1 - Pb2) * d.end_area
-        + rim * w1 * (PL1 - Pa1)
-        - rim * w2 * (PL2 - Pa2)
-        - (d.viscous_friction + drag) * xdot
-        - d.coulomb_friction * friction
-        + d.extra_force
-        + stop
-    ) / m
-    jac[5, 1] = (-rim * w1 * Pa1_ - d.transient * w1 * root_1_ * xdot * drag_Pa1_) / m
-    jac[5, 2] = (rim * w2 * Pa2_ - d.transient * w2 * root_2_ * xdot * drag_Pa2_) / m
-    jac[5, 3] = d.end_area / m * Pb1_
-    jac[5, 4] = -d.end_area / m * Pb2_
-    friction_v = d.coulomb_friction * (1.0 - friction * friction) / FRICTION_VELOCITY
-    jac[5, 5] = (-d.viscous_friction - drag - friction_v + stop_v) / m * x_
-    brake_x = d.transient * (w1_x * root_1 + w2_x * root_2) * xdot
-    jac[5, 6] = (rim * w1_x * (PL1 - Pa1) - rim * w2_x * (PL2 - Pa2) - brake_x + stop_x) / m
-    jac[5, 7] = (rim * w1 * PL1_ + d.transient * w1 * root_1_ * xdot * drag_PL1_) / m
-    jac[5, 8] = (-rim * w2 * PL2_ + d.transient * w2 * root_2_ * xdot * drag_PL2_) / m
-    out[6] = xdot
-    jac[6, 5] = x_
+        _carry(e, e_, _STRETCHES[3], (Pb2_, Pa2_), (end_gain_2, bypass_a), (fades_2, 0.0), out, jac)
 
 
 @compiled
@@ -262,14 +263,30 @@ def load_coefficients(since, d):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _carry(e, e_, here, there, here_, there_, gain_here, gain_there, out, jac):  # type: ignore[no-untyped-def]
-    """Take a flow and its slope in both grooves from one balance to another."""
-    out[here] -= 2.0 * gain_here * e
-    jac[here, here] -= 2.0 * gain_here * e_ * here_
-    jac[here, there] += 2.0 * gain_here * e_ * there_
-    out[there] += 2.0 * gain_there * e
-    jac[there, here] += 2.0 * gain_there * e_ * here_
-    jac[there, there] -= 2.0 * gain_there * e_ * there_
+def _pilot_flows(p, Ps, Pa, Pb):  # type: ignore[no-untyped-def]
+    """Return what the folded pilot stage of one side adds to supply, flow chamber and end chamber."""
+    return (
+        p[0, 0] * Ps + p[0, 1] * Pa + p[0, 2] * Pb,
+        p[1, 0] * Ps + p[1, 1] * Pa + p[1, 2] * Pb,
+        p[2, 0] * Ps + p[2, 1] * Pa + p[2, 2] * Pb,
+    )
+
+
+@compiled
+def _carry(e, e_, balances, slopes, gains, fades, out, jac):  # type: ignore[no-untyped-def]
+    """Take a flow and its slope in both grooves from one balance to another; a gain fades as its volume grows."""
+    here, there = balances[0], balances[1]
+    out[here] -= 2.0 * gains[0] * e
+    out[there] += 2.0 * gains[1] * e
+    if jac is not None:
+        jac[here, here] -= 2.0 * gains[0] * e_ * slopes[0]
+        jac[here, there] += 2.0 * gains[0] * e_ * slopes[1]
+        jac[there, here] += 2.0 * gains[1] * e_ * slopes[0]
+        jac[there, there] -= 2.0 * gains[1] * e_ * slopes[1]
+        if fades[0] != 0.0:
+            jac[here, 6] += 2.0 * gains[0] * e * fades[0]
+        if fades[1] != 0.0:
+            jac[there, 6] -= 2.0 * gains[1] * e * fades[1]
 
 
 @compiled
@@ -331,6 +348,15 @@ def _port(e, d):  # type: ignore[no-untyped-def]
         slope = -d.arc_holes * rv * rv / half - d.chord_holes * (half - e * e / half)
         return area, slope, d.rim_holes * 2.0 * half, -d.rim_holes * 2.0 * e / half
     return area, 0.0, d.rim_holes * 2.0 * half, 0.0
+
+
+@compiled
+def _coulomb_friction(xdot, d):  # type: ignore[no-untyped-def]
+    """Return Coulomb friction [N], against the motion, and its slope by ẋ."""
+    if d.coulomb_friction == 0.0:
+        return 0.0, 0.0
+    share = math.tanh(xdot / FRICTION_VELOCITY)
+    return d.coulomb_friction * share, d.coulomb_friction * (1.0 - share * share) / FRICTION_VELOCITY
 
 
 @compiled

@@ -1,20 +1,29 @@
 """The divider as a model to optimise: parameters in, quantities and verdicts out."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
+from divideropt.models.divider.batch import simulate_batch
+from divideropt.models.divider.coefficients import options_record
+from divideropt.models.divider.course import empty_course
 from divideropt.models.divider.formulations import FORMULATIONS, Formulation
-from divideropt.models.divider.metrics import measure
+from divideropt.models.divider.kernels import N_STATES
+from divideropt.models.divider.metrics import Findings, measure
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import quantities_of
+from divideropt.models.divider.record import COEFFICIENTS, PARAMETER_ROW, blank
 from divideropt.models.divider.response import Response, respond
+from divideropt.models.divider.result_record import NOT_FOLLOWED
 from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
-from divideropt.ode import SolverSettings
+from divideropt.models.divider.verdicts import verdict_of
+from divideropt.ode import ROSENBROCK, SolverSettings
+from divideropt.ode.rosenbrock import Workspace
 
 REFERENCE_METHOD, OTHER_REFERENCE_METHOD = "Radau", "LSODA"
 REFERENCE_RTOL = 1e-10
@@ -31,12 +40,14 @@ class Divider:
         scenario: What happens to every design.
         settings: How to integrate.
         groove_loss: Whether the pilot grooves lose `groove_loss_factor` velocity heads at entrance and exit.
+        threads: How many share a batch; the results do not depend on it.
     """
 
     formulation: str = "conservative"
     scenario: Scenario = field(default_factory=Scenario)
     settings: SolverSettings = field(default_factory=solver_settings)
     groove_loss: bool = False
+    threads: int = 1
 
     @cached_property
     def reading(self) -> Formulation:
@@ -62,12 +73,47 @@ class Divider:
         Returns:
             The quantities, shape (n, m), and a verdict a design.
         """
-        rows, verdicts = [], []
-        for design in designs:
-            row, verdict = measure(self.respond(dict(zip(PARAMETERS, design.tolist(), strict=True))))
-            rows.append(row)
+        if self.settings.method != ROSENBROCK:
+            return self._one_by_one(designs)
+        found = self._batch(designs)
+        quantities = found.quantities()
+        verdicts: list[Verdict] = []
+        for i, judgement in enumerate(found.judgements):
+            if judgement["finding"] == NOT_FOLLOWED:
+                quantities[i], verdict = measure(self.respond(_by_name(designs[i])))
+            else:
+                verdict = verdict_of(judgement, self.scenario)
             verdicts.append(verdict)
-        return np.array(rows).reshape(len(designs), len(self.quantities)), verdicts
+        return quantities, verdicts
+
+    def _batch(self, designs: FloatArray) -> Findings:
+        """Send designs through the compiled loop, `threads` shares at a time."""
+        rows = np.ascontiguousarray(designs, dtype=np.float64).view(PARAMETER_ROW)[:, 0]
+        found = Findings(self.scenario, len(rows))
+        edges = np.linspace(0, len(rows), self.threads + 1).astype(int).tolist()
+
+        def simulate(low: int, high: int) -> None:
+            limit = self.settings.max_steps
+            course, work = empty_course(self.scenario, limit * len(self.scenario.spans())), Workspace(N_STATES, limit)
+            atol = (np.array(self.settings.atol), np.array(resolving_friction(self.settings).atol))
+            simulate_batch(
+                rows, options_record(self.reading), course, blank(COEFFICIENTS), (self.settings.rtol, *atol, limit),
+                (work.s, work.k, work.state, work.u, work.U), (found.whole, found.by_event, found.judgements),
+                low, high,
+            )  # fmt: skip
+
+        if self.threads == 1:
+            simulate(0, len(rows))
+            return found
+        with ThreadPoolExecutor(self.threads) as pool:
+            list(pool.map(simulate, edges[:-1], edges[1:]))
+        return found
+
+    def _one_by_one(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
+        """Simulate with a solver that is not compiled with the valve."""
+        measured = [measure(self.respond(_by_name(design))) for design in designs]
+        quantities = np.array([row for row, _ in measured]).reshape(len(designs), len(self.quantities))
+        return quantities, [verdict for _, verdict in measured]
 
     def reference(self) -> "Divider":
         """Return the same valve and scenario, integrated by a second solver at a relative tolerance of 1e-10.
@@ -86,3 +132,7 @@ class Divider:
         """
         settings = resolving_friction(self.settings) if parameters["coulomb_friction"] > 0.0 else self.settings
         return respond(parameters, reading or self.reading, self.scenario, settings)
+
+
+def _by_name(design: FloatArray) -> dict[str, float]:
+    return dict(zip(PARAMETERS, design.tolist(), strict=True))

@@ -1,17 +1,22 @@
 """Whether a response has come to an oscillation that neither dies nor grows: a limit cycle."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.models.base import FloatArray
+from divideropt.models.divider.kernels import STATES, load_flows
 from divideropt.models.divider.response import Phase
+from divideropt.ode.base import NODES
+from divideropt.ode.compiled import compiled
 
 STEADY = 0.02
 """By how much, of itself, the amplitude of a sustained oscillation may differ between the last two quarters."""
 
 FEWEST_CROSSINGS = 4
 """Of the equilibrium's flow in each of those quarters: two whole swings, so that no slow drift counts."""
+
+_FIRST, _SECOND = STATES.index("PL1"), STATES.index("PL2")
 
 
 @dataclass(frozen=True)
@@ -37,31 +42,57 @@ def sustained_oscillation(phase: Phase, smallest: float) -> Oscillation | None:
     Returns:
         It, or None where the response settles, drifts, grows, dies away, or has no equilibrium.
     """
-    if phase.end is None or phase.rest is None or phase.trajectory is None:
-        return None
-    rest = float(phase.load_flows(phase.rest.state)[0])
-    if rest <= 0.0:
-        return None
-    end = phase.span.end
-    quarter = (end - phase.span.begin) / 4
-    late = _swing(phase, rest, end - quarter, end)
-    if late.size == 0 or np.abs(late).max() < smallest:
-        return None
-    early = _swing(phase, rest, end - 2 * quarter, end - quarter)
-    if early.size == 0:
-        return None
-    amplitudes = [float(np.abs(swing).max()) for swing in (early, late)]
-    crossings = [int(np.count_nonzero(np.diff(np.signbit(swing)))) for swing in (early, late)]
-    steady = abs(amplitudes[1] - amplitudes[0]) <= STEADY * amplitudes[0]
-    if not steady or min(crossings) < FEWEST_CROSSINGS:
-        return None
-    return Oscillation(max(amplitudes), sum(crossings) / 2 / (2 * quarter))
-
-
-def _swing(phase: Phase, rest: float, begin: float, end: float) -> FloatArray:
-    """Flow to load 1 at the nodes of the solver's steps over a stretch, less the equilibrium's, in shares of it."""
     run = phase.trajectory
-    assert run is not None
-    steps = slice(*np.searchsorted(run.edges, [begin, end]))
-    states = np.swapaxes(run.values[steps], 1, 2).reshape(-1, run.values.shape[1])
-    return np.asarray(phase.load_flows(states)[:, 0] / rest - 1)
+    if phase.end is None or phase.rest is None or run is None:
+        return None
+    amplitude, frequency = oscillation(
+        run.edges, run.values, phase.design, phase.rest.state, phase.span.begin, phase.span.end, smallest
+    )
+    return None if math.isnan(amplitude) else Oscillation(amplitude, frequency)
+
+
+@compiled
+def oscillation(edges, values, design, rest, begin, end, smallest):  # type: ignore[no-untyped-def]
+    """Return amplitude and frequency of an oscillation, NaN where there is none; compiled.
+
+    Args:
+        edges: Times of the steps [s], shape (k + 1,).
+        values: States at the nodes of each, shape (k, 9, NODES_PER_STEP).
+        design: `COEFFICIENTS`, shape (1,), under inputs that stay.
+        rest: The equilibrium, shape (9,).
+        begin: Of the phase [s].
+        end: Of the phase [s].
+        smallest: As for `sustained_oscillation`.
+    """
+    d = design[0]
+    flow = load_flows(end, rest[_FIRST], rest[_SECOND], d)[0]
+    if not flow > 0.0:
+        return math.nan, math.nan
+    quarter = (end - begin) / 4.0
+    late, late_crossings = _swing(edges, values, d, flow, end - quarter, end)
+    if not late >= smallest:
+        return math.nan, math.nan
+    early, early_crossings = _swing(edges, values, d, flow, end - 2.0 * quarter, end - quarter)
+    if not abs(late - early) <= STEADY * early or min(early_crossings, late_crossings) < FEWEST_CROSSINGS:
+        return math.nan, math.nan
+    return max(early, late), (early_crossings + late_crossings) / 2.0 / (2.0 * quarter)
+
+
+@compiled
+def _swing(edges, values, d, flow, begin, end):  # type: ignore[no-untyped-def]
+    """Largest distance of the flow to load 1 from the equilibrium's, in shares of it, and how often it crosses it.
+
+    It is looked at in the nodes of the steps that begin within the stretch; NaN where there are none.
+    """
+    first, after = np.searchsorted(edges, begin), np.searchsorted(edges, end)
+    largest, crossings, above = math.nan, 0, False
+    for i in range(first, min(after, values.shape[0])):
+        for m in range(NODES.size):
+            swing = load_flows(edges[i], values[i, _FIRST, m], values[i, _SECOND, m], d)[0] / flow - 1.0
+            if math.isnan(largest):
+                largest = abs(swing)
+            else:
+                largest = max(largest, abs(swing))
+                crossings += above != (swing >= 0.0)
+            above = swing >= 0.0
+    return largest, crossings

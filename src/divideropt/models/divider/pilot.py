@@ -6,21 +6,17 @@ the stage is folded into coefficients once a design, and the right-hand side of 
 it, unless the spool is being turned. The losses at a groove's ends, an option, are not linear: the kernel adds them.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from divideropt.models.base import FloatArray
+from divideropt.models.divider.coefficient_kernels import derive
 from divideropt.models.divider.formulations import Formulation
+from divideropt.models.divider.geometry import parameter_row
 from divideropt.models.divider.groove_kernels import fold_side, gather
-
-GROOVE_FACTOR = 185.0
-"""Laminar flow through an equilateral triangle of side b: Q = -b⁴/(185 μ) dP/dl, (A.3)."""
-
-ENTRANCE_SHARE = 1 / 3
-"""Share of a groove's loss at the supply's end: 0.5 of the 1.5 velocity heads of a sharp entrance and an exit."""
+from divideropt.models.divider.record import GEOMETRY, Records, blank
 
 
 @dataclass(frozen=True)
@@ -46,17 +42,9 @@ class Groove:
     @classmethod
     def of(cls, p: Mapping[str, float]) -> "Groove":
         """Derive it from every parameter by name, SI."""
-        r, b, h = p["spool_radius"], p["groove_width"], p["land_distance"]
-        viscosity, gap = p["kinematic_viscosity"] * p["density"], p["radial_clearance"] ** 3
-        length = math.sqrt(6 * b**4 * h / (GROOVE_FACTOR * r**2 * gap))
-        return cls(
-            length=length,
-            conductance=b**4 / (GROOVE_FACTOR * viscosity * r * length),
-            leakage=r * gap / (6 * viscosity * h),
-            angle=p["groove_angle"],
-            area=math.sqrt(3) / 4 * b**2,
-            hydraulic_diameter=b / math.sqrt(3),
-        )
+        derived = blank(GEOMETRY)
+        derive(parameter_row(p), 1.0, 1, derived)
+        return groove_of(derived)
 
 
 @dataclass(frozen=True)
@@ -85,6 +73,19 @@ class PilotSide:
         net = np.empty((3, 3))
         gather(np.array(rows), 1.0, net)
         return net
+
+
+def groove_of(derived: Records) -> Groove:
+    """Return the groove of a record of `GEOMETRY`, shape (1,)."""
+    g = derived[0]
+    return Groove(
+        length=float(g.groove_length),
+        conductance=float(g.groove_conductance),
+        leakage=float(g.groove_leakage),
+        angle=float(g.groove_angle),
+        area=float(g.groove_area),
+        hydraulic_diameter=float(g.groove_diameter),
+    )
 
 
 def pilot_sides(

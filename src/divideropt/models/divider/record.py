@@ -1,9 +1,103 @@
-"""The record that the compiled equations read: everything one design and the inputs of one phase fix."""
+"""The records in which designs, formulations and scenarios come to the compiled functions, all SI."""
 
-from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from divideropt.models.divider.parameters import PARAMETERS
+
+PARAMETER_ROW = np.dtype((np.record, [(name, "f8") for name in PARAMETERS]))
+"""A design: a row of a batch, its columns by name."""
+
+GEOMETRY = np.dtype(
+    (
+        np.record,
+        [
+            ("viscosity", "f8"),
+            ("stem_radius", "f8"),
+            ("end_area", "f8"),
+            ("mass", "f8"),
+            ("spool_length", "f8"),
+            ("viscous_friction", "f8"),
+            ("fixed_area_1", "f8"),
+            ("fixed_area_2", "f8"),
+            ("port_radius", "f8"),
+            ("port_offset", "f8"),
+            ("stop_position", "f8"),
+            ("end_volume", "f8"),
+            ("chamber_volume", "f8"),
+            ("seal_leakage", "f8"),
+            ("open_drop", "f8"),
+            ("groove_length", "f8"),  # √c
+            ("groove_conductance", "f8"),  # b⁴/(185 μ r √c)
+            ("groove_leakage", "f8"),  # r δ³/(6 μ h)
+            ("groove_angle", "f8"),  # φ0
+            ("groove_area", "f8"),
+            ("groove_diameter", "f8"),  # hydraulic
+        ],
+    )
+)
+"""What a design's dimensions make; `Geometry` and `Groove` say what each is."""
+
+OPTIONS = np.dtype(
+    (
+        np.record,
+        [
+            ("pilot", "i8"),
+            ("leakage_sign", "f8"),  # of side 2
+            ("arc_holes", "f8"),
+            ("chord_holes", "f8"),
+            ("rim_holes", "f8"),
+            ("stem", "i8"),
+            ("end_seals", "i8"),
+            ("transient_force", "i8"),
+            ("orifice_law", "i8"),
+            ("port_range", "i8"),
+            ("stop", "i8"),
+            ("pressure_floor", "i8"),
+            ("pilot_bypass", "f8"),
+            ("groove_loss", "i8"),
+        ],
+    )
+)
+"""A formulation; `Formulation` says what each is."""
+
+RULES = np.dtype(
+    (
+        np.record,
+        [
+            ("sized_for", "f8"),  # source flow for which the load orifices are sized
+            ("settled", "i8"),  # whether the response begins at rest
+            ("events", "i8"),
+            ("last_event_time", "f8"),
+            ("end_time", "f8"),
+            ("accumulation_time", "f8"),
+        ],
+    )
+)
+"""What a scenario says beside its stretches; `Scenario` says what each is."""
+
+SPAN = np.dtype(
+    (
+        np.record,
+        [
+            ("begin", "f8"),
+            ("end", "f8"),
+            ("event", "i8"),
+            ("moving", "i8"),
+            ("source_flow", "f8"),
+            ("spool_position", "f8"),
+            ("load_pressure_1", "f8"),
+            ("load_pressure_2", "f8"),
+            ("final_source_flow", "f8"),
+            ("final_spool_position", "f8"),
+            ("final_load_pressure_1", "f8"),
+            ("final_load_pressure_2", "f8"),
+        ],
+    )
+)
+"""A stretch of a scenario; `Span` says what each is."""
 
 COEFFICIENTS = np.dtype(
     (
@@ -64,23 +158,14 @@ COEFFICIENTS = np.dtype(
 )
 """What the kernel reads: one design between two events, SI."""
 
-Design = NDArray[np.record]
+Records = NDArray[np.record]
+"""Of any of these, shape (n,)."""
+
+
+Design = Records
 """`COEFFICIENTS` of one design, shape (1,)."""
 
 
-def record_of(values: Mapping[str, float]) -> Design:
-    """Make a record.
-
-    Args:
-        values: Of the fields by name; those that are not given are 0.
-
-    Returns:
-        `COEFFICIENTS`, shape (1,).
-    """
-    blank = [np.zeros(shape) if shape else 0 for shape in _SHAPES]
-    row = tuple(values.get(name, empty) for name, empty in zip(_NAMES, blank, strict=True))
-    return np.array([row], dtype=COEFFICIENTS)
-
-
-_NAMES = COEFFICIENTS.names or ()
-_SHAPES = [COEFFICIENTS[name].shape for name in _NAMES]
+def blank(dtype: np.dtype[Any], count: int = 1) -> Records:
+    """Return so many records of zeros."""
+    return np.zeros(count, dtype=dtype)

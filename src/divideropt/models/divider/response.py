@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from divideropt.models.divider.equilibrium import (
     find_equilibrium,
     initial_guess,
     rest_on_rigid_stop,
+    without_friction,
 )
 from divideropt.models.divider.formulations import Formulation, Stop
 from divideropt.models.divider.geometry import Geometry
@@ -25,8 +25,8 @@ from divideropt.models.divider.kernels import (
     zero_state,
 )
 from divideropt.models.divider.record import Design
+from divideropt.models.divider.run_kernels import run
 from divideropt.models.divider.scenario import Scenario, Span
-from divideropt.models.divider.solver_kernels import run
 from divideropt.ode import ROSENBROCK, Event, SolverSettings, SolverStatus, Trajectory, integrate
 from divideropt.ode.rosenbrock import Workspace
 
@@ -102,20 +102,18 @@ class Response:
         """Whether a final state is an equilibrium to be solved for, and not wherever the response ends."""
         return self.scenario.settled and self.parameters["coulomb_friction"] == 0.0
 
-    @cached_property
-    def windows(self) -> tuple[tuple[Phase, ...], ...]:
-        """The phases of each event in turn: its way, if it is a ramp, and its stay."""
-        return tuple(
-            tuple(phase for phase in self.phases if phase.span.event == number)
-            for number in range(len(self.scenario.events))
-        )
+    def friction_band(self, phase: Phase) -> tuple[FloatArray, FloatArray] | None:
+        """Find the rests near a phase's end at which Coulomb friction holds to one side and to the other.
 
-
-def distance_from_rest(phase: Phase) -> float:
-    """Largest distance of a load flow at a phase's end from the equilibrium's, in shares of it; NaN if unknown."""
-    if phase.end is None or phase.rest is None:
-        return math.nan
-    return float(np.max(np.abs(phase.load_flows(phase.end) / phase.load_flows(phase.rest.state) - 1)))
+        Returns:
+            Two states, each of shape (9,); None without friction, or where one is not found.
+        """
+        friction = self.parameters["coulomb_friction"]
+        if friction == 0.0 or phase.end is None or phase.span.moving:
+            return None
+        rests = [find_equilibrium(without_friction(phase.design, f), phase.end) for f in (-friction, friction)]
+        low, high = rests
+        return None if low is None or high is None else (low.state, high.state)
 
 
 def respond(
@@ -220,7 +218,7 @@ def _run_compiled(
     work.state[:] = start
     bound = math.inf if event is None else float(design[0].stop_position)
     ending = run(
-        design, *span, settings.max_steps, work.s, work.k, work.state, work.f0, work.f, work.jac, work.slope,
-        work.lu, work.pivots, work.U, work.u, settings.rtol, np.array(settings.atol), bound, work.edges, work.values,
+        design, *span, settings.max_steps, work.s, work.k, work.state, work.u, work.U,
+        settings.rtol, np.array(settings.atol), bound, work.edges, work.values,
     )  # fmt: skip
     return work.trajectory(ending, start, event)

@@ -1,7 +1,5 @@
 """What happens to the valve: events on its inputs, and the phases between which they divide the time."""
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -153,23 +151,3 @@ class Scenario:
                 spans.append(Span(arrived, end, after, after, number))
             inputs = after
         return tuple(spans)
-
-
-def load_areas(
-    p: Mapping[str, float], load_pressures: tuple[float, float], source_flow: float
-) -> tuple[float, float]:
-    """Size the load orifices so that half the source flow makes the stated pressures, section 3.1.
-
-    Args:
-        p: Every parameter by name, SI.
-        load_pressures: The pressures [Pa].
-        source_flow: Qs for which they are sized [m^3/s].
-
-    Returns:
-        AL1 and AL2 [m^2].
-    """
-    first, second = (
-        (source_flow / 2) / (p["load_discharge"] * math.sqrt(2 / p["density"] * pressure))
-        for pressure in load_pressures
-    )
-    return first, second

@@ -1,0 +1,81 @@
+"""A response of the valve, compiled: the loop over the steps of `divideropt.ode.rosenbrock`."""
+
+import numpy as np
+
+from divideropt.models.divider.elimination_kernels import factorise_shifted, solve_shifted
+from divideropt.models.divider.kernels import N_STATES, STATES, motion
+from divideropt.ode.compiled import compiled
+from divideropt.ode.rodas5p import GAMMA, STAGES
+from divideropt.ode.rosenbrock import (
+    NEXT,
+    RETRY,
+    STEP,
+    TIME,
+    TIME_DIFFERENCE,
+    begin,
+    conclude,
+    stage_right_side,
+    stage_state,
+    stage_time,
+)
+
+_POSITION = STATES.index("x")
+
+
+@compiled
+def run(design, first, last, limit, s, k, y, u, U, rtol, atol, bound, edges, values):  # type: ignore[no-untyped-def]
+    """Integrate by `divideropt.ode.rosenbrock`: the loop over its steps.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,).
+        first: First time [s].
+        last: Last time [s].
+        limit: Budget of steps.
+        s: With the next four, the arrays of a `Workspace`; `y` holds the start.
+        k: See `s`.
+        y: See `s`.
+        u: See `s`.
+        U: See `s`.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance a state, shape (9,).
+        bound: Where the spool's position ends the run [m]; infinity if nowhere.
+        edges: Receives the times, shape (limit + 1,).
+        values: Receives the states at the nodes of each step, shape (limit, 9, NODES_PER_STEP).
+
+    Returns:
+        How it ended, as `conclude`.
+    """
+    d = design[0]
+    near, far = d.port_offset - d.port_radius, d.port_offset + d.port_radius  # where a port opens or is fully open
+    kinks = np.array([near, far, -near, -far])
+    f0, f, slope = np.empty(N_STATES), np.empty(N_STATES), np.zeros(N_STATES)
+    jac, lu = np.zeros((N_STATES, N_STATES)), np.zeros((N_STATES, N_STATES))
+    edges[0] = first
+    motion(first, y, d, f0, jac)
+    begin(s, k, first, last, limit, y, f0, rtol, atol)
+    while True:
+        if d.moving != 0:
+            _time_slope(s[TIME], TIME_DIFFERENCE * (last - first), y, d, f, slope)
+        after = RETRY
+        while after == RETRY:
+            factorise_shifted(jac, 1.0 / (GAMMA * s[STEP]), lu)
+            stage_right_side(0, s[STEP], f0, slope, U)
+            solve_shifted(lu, U, 0)
+            for stage in range(1, STAGES):
+                stage_state(stage, y, U, u)
+                motion(stage_time(stage, s), u, d, f, None)
+                stage_right_side(stage, s[STEP], f, slope, U)
+                solve_shifted(lu, U, stage)
+            after = conclude(s, k, y, u, U, rtol, atol, _POSITION, bound, kinks, edges, values)
+        if after != NEXT:
+            return after
+        motion(s[TIME], y, d, f0, jac)
+
+
+@compiled
+def _time_slope(t, step, y, d, f, slope):  # type: ignore[no-untyped-def]
+    """Fill ∂f/∂t by a central difference; `f` is work."""
+    motion(t + step, y, d, slope, None)
+    motion(t - step, y, d, f, None)
+    for i in range(N_STATES):
+        slope[i] = (slope[i] - f[i]) / (2.0 * step)
