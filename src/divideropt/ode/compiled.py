@@ -51,7 +51,7 @@ def _folder() -> Path:
 
 def _sources() -> list[Path]:
     """Every source with compiled functions, and what these import: there are constants that were compiled in."""
-    found = set()
+    found: set[Path] = set()
     for path in _PACKAGE.rglob("*.py"):
         content = path.read_bytes()
         if _MARK in content:

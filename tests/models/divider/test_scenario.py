@@ -128,7 +128,7 @@ def test_metrics_of_a_ramp_against_brute_force(measured, design) -> None:
     scenario = Scenario(events=(load_step(1, 15e6, over=0.03),), accumulation_time=0.15)
     model = Divider(scenario=scenario, settings=TIGHT)
     q, response = measured(model, design()), model.respond(design())
-    way, stay = response.windows[0]
+    _, way, stay = response.phases
     times, flows = [], []
     for phase in (way, stay):
         t = np.concatenate(
