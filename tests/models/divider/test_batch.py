@@ -8,7 +8,7 @@ from divideropt.models.divider import Divider, Event, Scenario, load_step
 from divideropt.models.divider import model as model_module
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.parameters import PARAMETERS
-from divideropt.models.divider.record import PARAMETER_ROW
+from divideropt.models.divider.record import parameter_rows
 from divideropt.models.divider.result_record import NOT_FOLLOWED
 
 RAMP = Scenario(
@@ -75,6 +75,6 @@ def _follow_none(rows, *others) -> None:
 
 
 def test_the_row_has_the_parameters_in_order(batch) -> None:
-    rows = np.ascontiguousarray(batch).view(PARAMETER_ROW)[:, 0]
+    rows = parameter_rows(batch)
     for i, name in enumerate(PARAMETERS):
         np.testing.assert_array_equal(rows[name], batch[:, i])

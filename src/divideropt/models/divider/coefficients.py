@@ -1,7 +1,7 @@
 """From parameters and inputs by name to the records that the compiled functions read."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -94,21 +94,16 @@ def span_records(spans: Sequence[Span]) -> Records:
 
 def rules_record(scenario: Scenario) -> Records:
     """Return `RULES` of a scenario, shape (1,)."""
-    return np.array(
-        [
-            (
-                scenario.source_flow,
-                scenario.settled,
-                len(scenario.events),
-                scenario.last_event_time,
-                scenario.end_time,
-                scenario.accumulation_time,
-            )
-        ],
-        dtype=RULES,
+    values = (
+        scenario.source_flow,
+        scenario.settled,
+        len(scenario.events),
+        scenario.last_event_time,
+        scenario.end_time,
+        scenario.accumulation_time,
     )
+    return np.array([values], dtype=RULES)
 
 
 def _flat(inputs: Inputs) -> tuple[float, float, float, float]:
-    flow, position, (first, second) = astuple(inputs)
-    return flow, position, first, second
+    return inputs.source_flow, inputs.spool_position, *inputs.load_pressures

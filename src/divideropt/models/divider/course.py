@@ -10,7 +10,6 @@ from divideropt.models.divider.coefficients import rules_record, span_records
 from divideropt.models.divider.kernels import N_STATES
 from divideropt.models.divider.record import COEFFICIENTS, GEOMETRY, PARAMETER_ROW, Records, blank
 from divideropt.models.divider.response import Response
-from divideropt.models.divider.scenario import Scenario
 from divideropt.ode import SolverStatus
 from divideropt.ode.base import NODES_PER_STEP
 
@@ -57,14 +56,19 @@ class Course(NamedTuple):
     bands: FloatArray
 
 
-def empty_course(scenario: Scenario, steps: int) -> Course:
-    """Return a course with room for so many steps; memory that is not reached is not touched."""
-    spans = span_records(scenario.spans())
+def empty_course(rules: Records, spans: Records, steps: int) -> Course:
+    """Return a course with room for so many steps; memory that is not reached is not touched.
+
+    Args:
+        rules: `RULES` of a scenario, shape (1,).
+        spans: `SPAN` of its stretches, shape (p,).
+        steps: How many.
+    """
     p = len(spans)
     return Course(
         row=blank(PARAMETER_ROW),
         derived=blank(GEOMETRY),
-        rules=rules_record(scenario),
+        rules=rules,
         spans=spans,
         designs=blank(COEFFICIENTS, p),
         first=np.zeros(p + 1, dtype=np.int64),
@@ -84,7 +88,8 @@ def empty_course(scenario: Scenario, steps: int) -> Course:
 def course_of(response: Response) -> Course:
     """Pack a response."""
     runs = [phase.trajectory for phase in response.phases]
-    course = empty_course(response.scenario, sum(0 if run is None else len(run.values) for run in runs))
+    rules, spans = rules_record(response.scenario), span_records(response.scenario.spans())
+    course = empty_course(rules, spans, sum(0 if run is None else len(run.values) for run in runs))
     course.row[:], course.derived[:] = response.valve.row, response.valve.derived
     for i, phase in enumerate(response.phases):
         course.designs[i] = phase.design[0]

@@ -4,6 +4,7 @@ The last event's quantities have plain names; those of an earlier one are prefix
 and are not defined where the next event comes before the flows have settled.
 """
 
+from functools import cache
 from typing import cast
 
 import numpy as np
@@ -55,13 +56,17 @@ class Findings:
 
     def quantities(self) -> FloatArray:
         """Return the quantities, shape (n, m), in the order of `quantities_of(events)`."""
-        width = len(EVENT_QUANTITIES)
         table = np.column_stack([self._whole, self._by_event])
-        last = table.shape[1] - width
-        places = {name: i for i, name in enumerate(WHOLE_QUANTITIES)}
-        places |= {name: last + i for i, name in enumerate(EVENT_QUANTITIES)}
-        for number in self._scenario.measured_events:
-            begin = len(WHOLE_QUANTITIES) + (number - 1) * width
-            places |= {f"event_{number}.{name}": begin + i for i, name in enumerate(EVENT_QUANTITIES)}
-        names = quantities_of(self._scenario.measured_events)
-        return np.ascontiguousarray(table[:, [places[name] for name in names]])
+        return table[:, _places(len(self._scenario.events), self._scenario.measured_events)]
+
+
+@cache
+def _places(events: int, measured: tuple[int, ...]) -> list[int]:
+    """Where the quantities stand in the records of a response, one after the other."""
+    first, width = len(WHOLE_QUANTITIES), len(EVENT_QUANTITIES)
+    places = {name: i for i, name in enumerate(WHOLE_QUANTITIES)}
+    places |= {name: first + (events - 1) * width + i for i, name in enumerate(EVENT_QUANTITIES)}
+    for number in measured:
+        begin = first + (number - 1) * width
+        places |= {f"event_{number}.{name}": begin + i for i, name in enumerate(EVENT_QUANTITIES)}
+    return [places[name] for name in quantities_of(measured)]

@@ -3,25 +3,25 @@
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
 from divideropt.models.divider.batch import simulate_batch
-from divideropt.models.divider.coefficients import options_record
+from divideropt.models.divider.coefficients import options_record, rules_record, span_records
 from divideropt.models.divider.course import empty_course
 from divideropt.models.divider.formulations import FORMULATIONS, Formulation
 from divideropt.models.divider.kernels import N_STATES
 from divideropt.models.divider.metrics import Findings, measure
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import quantities_of
-from divideropt.models.divider.record import COEFFICIENTS, PARAMETER_ROW, blank
+from divideropt.models.divider.record import COEFFICIENTS, Records, blank, parameter_rows
 from divideropt.models.divider.response import Response, respond
-from divideropt.models.divider.result_record import NOT_FOLLOWED
+from divideropt.models.divider.result_record import NOT_FOLLOWED, SOUND
 from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
-from divideropt.models.divider.verdicts import verdict_of
+from divideropt.models.divider.verdicts import OK, verdict_of
 from divideropt.ode import ROSENBROCK, SolverSettings
 from divideropt.ode.rosenbrock import Workspace
 
@@ -77,37 +77,46 @@ class Divider:
             return self._one_by_one(designs)
         found = self._batch(designs)
         quantities = found.quantities()
-        verdicts: list[Verdict] = []
-        for i, judgement in enumerate(found.judgements):
-            if judgement["finding"] == NOT_FOLLOWED:
-                quantities[i], verdict = measure(self.respond(_by_name(designs[i])))
+        verdicts = [OK] * len(quantities)
+        for i in np.flatnonzero(found.judgements["finding"] != SOUND):
+            if found.judgements["finding"][i] == NOT_FOLLOWED:
+                quantities[i], verdicts[i] = measure(self.respond(_by_name(designs[i])))
             else:
-                verdict = verdict_of(judgement, self.scenario)
-            verdicts.append(verdict)
+                verdicts[i] = verdict_of(found.judgements[i], self.scenario)
         return quantities, verdicts
 
     def _batch(self, designs: FloatArray) -> Findings:
         """Send designs through the compiled loop, `threads` shares at a time."""
-        rows = np.ascontiguousarray(designs, dtype=np.float64).view(PARAMETER_ROW)[:, 0]
+        rows = parameter_rows(designs)
         found = Findings(self.scenario, len(rows))
-        edges = np.linspace(0, len(rows), self.threads + 1).astype(int).tolist()
-
-        def simulate(low: int, high: int) -> None:
-            limit = self.settings.max_steps
-            course, work = empty_course(self.scenario, limit * len(self.scenario.spans())), Workspace(N_STATES, limit)
-            atol = (np.array(self.settings.atol), np.array(resolving_friction(self.settings).atol))
-            simulate_batch(
-                rows, options_record(self.reading), course, blank(COEFFICIENTS), (self.settings.rtol, *atol, limit),
-                (work.s, work.k, work.state, work.u, work.U), (found.whole, found.by_event, found.judgements),
-                low, high,
-            )  # fmt: skip
-
         if self.threads == 1:
-            simulate(0, len(rows))
+            self._simulate(rows, found, 0, len(rows))
             return found
+        edges = [len(rows) * i // self.threads for i in range(self.threads + 1)]
         with ThreadPoolExecutor(self.threads) as pool:
-            list(pool.map(simulate, edges[:-1], edges[1:]))
+            list(pool.map(partial(self._simulate, rows, found), edges[:-1], edges[1:]))
         return found
+
+    def _simulate(self, rows: Records, found: Findings, low: int, high: int) -> None:
+        """Send a share of the designs through the compiled loop."""
+        options, rules, spans, settings = self._compiled_form
+        work = Workspace(N_STATES, 0)
+        simulate_batch(
+            rows, options, empty_course(rules, spans, settings[-1] * len(spans)), blank(COEFFICIENTS), settings,
+            (work.s, work.k, work.state, work.u, work.U), (found.whole, found.by_event, found.judgements), low, high,
+        )  # fmt: skip
+
+    @cached_property
+    def _compiled_form(self) -> tuple[Records, Records, Records, tuple[float, FloatArray, FloatArray, int]]:
+        """Formulation, scenario and settings as the compiled loop reads them."""
+        free, sticky = self.settings, resolving_friction(self.settings)
+        settings = (free.rtol, np.array(free.atol), np.array(sticky.atol), free.max_steps)
+        return (
+            options_record(self.reading),
+            rules_record(self.scenario),
+            span_records(self.scenario.spans()),
+            settings,
+        )
 
     def _one_by_one(self, designs: FloatArray) -> tuple[FloatArray, Sequence[Verdict]]:
         """Simulate with a solver that is not compiled with the valve."""

@@ -1,6 +1,6 @@
 """The records in which designs, formulations and scenarios come to the compiled functions, all SI."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,3 +169,8 @@ Design = Records
 def blank(dtype: np.dtype[Any], count: int = 1) -> Records:
     """Return so many records of zeros."""
     return np.zeros(count, dtype=dtype)
+
+
+def parameter_rows(designs: NDArray[np.float64]) -> Records:
+    """Return designs, shape (n, d), columns as in `PARAMETERS`, as `PARAMETER_ROW`, shape (n,)."""
+    return cast(Records, np.ascontiguousarray(designs, dtype=np.float64).view(PARAMETER_ROW)[:, 0])

@@ -1,6 +1,7 @@
 """What happens to the valve: events on its inputs, and the phases between which they divide the time."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 INSTANT = 1e-9
@@ -126,7 +127,7 @@ class Scenario:
         """The inputs before the first event."""
         return Inputs(self.source_flow, self.spool_position, self.load_pressures)
 
-    @property
+    @cached_property
     def measured_events(self) -> tuple[int, ...]:
         """The events before the last, from 1, after which the inputs stay a while: those that have metrics."""
         earlier = range(len(self.events) - 1)
@@ -139,6 +140,10 @@ class Scenario:
 
     def spans(self) -> tuple[Span, ...]:
         """Divide the time: before the first event, then the way and the stay of each event in turn."""
+        return self._spans
+
+    @cached_property
+    def _spans(self) -> tuple[Span, ...]:
         inputs = self.initial
         spans = [Span(0.0, self.events[0].at, inputs, inputs, -1)]
         ends = [event.at for event in self.events[1:]] + [self.end_time]
