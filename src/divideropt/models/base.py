@@ -13,7 +13,17 @@ import numpy as np
 
 from divideropt.ode.base import FloatArray
 
-__all__ = ["Domain", "FloatArray", "Model", "Outcome", "Parameter", "Quantity", "Verdict", "Verifiable"]
+__all__ = [
+    "Domain",
+    "FloatArray",
+    "Model",
+    "Outcome",
+    "Parameter",
+    "Quantity",
+    "Threaded",
+    "Verdict",
+    "Verifiable",
+]
 
 
 @dataclass(frozen=True)
@@ -157,4 +167,13 @@ class Verifiable(Model, Protocol):
 
     def reference(self) -> Model:
         """Return the model by which this one is verified, with the same parameters and quantities."""
+        ...
+
+
+@runtime_checkable
+class Threaded(Model, Protocol):
+    """A model whose batches threads of one process can share, which spares the way to other processes."""
+
+    def on_threads(self, threads: int) -> Model | None:
+        """Return the same model on so many threads, with the same results bit for bit; None if it gains nothing."""
         ...

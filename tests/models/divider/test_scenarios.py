@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from divideropt.models.base import Outcome
-from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step
+from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step, solver_settings
 from divideropt.models.divider.quantities import GEOMETRIC
 from divideropt.models.divider.scenarios import BASE, Scenarios, Worst
 
@@ -65,3 +65,18 @@ def test_the_reference_has_the_same_columns(design) -> None:
     for name in ("worst.dynamic_error", "low.settling_time", "source_pressure"):
         assert fast[name] == pytest.approx(exact[name], rel=2e-3), name
         assert fast["settling_time"] != exact["settling_time"]
+
+
+def test_threads_share_the_batches_of_every_scenario(box_designs) -> None:
+    designs = np.array([list(p.values()) for p in box_designs(12)])
+    models = {BASE: Divider(), "cold": Divider(scenario=Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),)))}
+    alone = Scenarios(models)
+    shared = alone.on_threads(2)
+    assert shared is not None
+    assert all(model.threads == 2 for model in shared.models.values())
+    np.testing.assert_array_equal(alone.evaluate(designs)[0], shared.evaluate(designs)[0])
+
+
+def test_a_solver_that_holds_the_interpreter_is_not_threaded() -> None:
+    assert Divider(settings=solver_settings("LSODA")).on_threads(2) is None
+    assert Scenarios({BASE: Divider(), "other": Divider(settings=solver_settings("BDF"))}).on_threads(2) is None

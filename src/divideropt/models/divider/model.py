@@ -30,6 +30,9 @@ REFERENCE_RTOL = 1e-10
 REFERENCE_MAX_STEPS = 200_000
 """A hundred times what a design that settles needs at that tolerance."""
 
+SMALLEST_SHARE = 4
+"""Designs of a batch that are worth a thread: to start one takes as long as two of them."""
+
 
 @dataclass(frozen=True)
 class Divider:
@@ -89,11 +92,12 @@ class Divider:
         """Send designs through the compiled loop, `threads` shares at a time."""
         rows = parameter_rows(designs)
         found = Findings(self.scenario, len(rows))
-        if self.threads == 1:
+        threads = min(self.threads, len(rows) // SMALLEST_SHARE)
+        if threads <= 1:
             self._simulate(rows, found, 0, len(rows))
             return found
-        edges = [len(rows) * i // self.threads for i in range(self.threads + 1)]
-        with ThreadPoolExecutor(self.threads) as pool:
+        edges = [len(rows) * i // threads for i in range(threads + 1)]
+        with ThreadPoolExecutor(threads) as pool:
             list(pool.map(partial(self._simulate, rows, found), edges[:-1], edges[1:]))
         return found
 
@@ -123,6 +127,10 @@ class Divider:
         measured = [measure(self.respond(_by_name(design))) for design in designs]
         quantities = np.array([row for row, _ in measured]).reshape(len(designs), len(self.quantities))
         return quantities, [verdict for _, verdict in measured]
+
+    def on_threads(self, threads: int) -> "Divider | None":
+        """Return the same model, its batches shared by threads; None for a solver that holds the interpreter."""
+        return replace(self, threads=threads) if self.settings.method == ROSENBROCK else None
 
     def reference(self) -> "Divider":
         """Return the same valve and scenario, integrated by a second solver at a relative tolerance of 1e-10.

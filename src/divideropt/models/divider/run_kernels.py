@@ -59,12 +59,11 @@ def run(design, first, last, limit, s, k, y, u, U, rtol, atol, bound, edges, val
         after = RETRY
         while after == RETRY:
             factorise_shifted(jac, 1.0 / (GAMMA * s[STEP]), lu)
-            stage_right_side(0, s[STEP], f0, slope, U)
-            solve_shifted(lu, U, 0)
-            for stage in range(1, STAGES):
-                stage_state(stage, y, U, u)
-                motion(stage_time(stage, s), u, d, f, None)
-                stage_right_side(stage, s[STEP], f, slope, U)
+            for stage in range(STAGES):
+                if stage > 0:
+                    stage_state(stage, y, U, u)
+                    motion(stage_time(stage, s), u, d, f, None)
+                stage_right_side(stage, s[STEP], f0 if stage == 0 else f, slope, U)
                 solve_shifted(lu, U, stage)
             after = conclude(s, k, y, u, U, rtol, atol, _POSITION, bound, kinks, edges, values)
         if after != NEXT:

@@ -85,6 +85,12 @@ class Scenarios:
             columns[worst.name] = _worst_of(over, quantities[worst.name].signed, worst.least)
         return np.column_stack([columns[name] for name in quantities]), verdicts
 
+    def on_threads(self, threads: int) -> "Scenarios | None":
+        """Return the same model, its batches shared by threads; None where one of the scenarios' cannot be."""
+        models = {name: model.on_threads(threads) for name, model in self.models.items()}
+        shared = {name: model for name, model in models.items() if model is not None}
+        return replace(self, models=shared) if len(shared) == len(models) else None
+
     def reference(self) -> "Scenarios":
         """Return the same model with the reference solver."""
         return replace(self, models={name: model.reference() for name, model in self.models.items()})
