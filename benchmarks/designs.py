@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from divideropt.campaign.load import default_campaign
@@ -31,7 +32,7 @@ class Box:
 
     model: Divider
     designs: FloatArray
-    feasible: FloatArray
+    feasible: NDArray[np.bool_]
 
 
 def sobol_points(count: int) -> Box:
@@ -57,7 +58,7 @@ def exact_objectives(model: Divider, designs: FloatArray, known: Path | None, ke
     Args:
         model: The valve.
         designs: Shape (n, d).
-        known: A file that an earlier run kept; solved anew where not given, which takes a quarter of a second a design.
+        known: A file that an earlier run kept; where not given they are solved anew, in a quarter of a second each.
         keep: Where to keep them.
     """
     if known is None:

@@ -39,7 +39,9 @@ def timed(call: Callable[[], Any], repeats: int = 1) -> float:
 class Integration:
     """The model's own integration of one design, from its start over its last phase."""
 
-    def __init__(self, design: Design, span: tuple[float, float], start: FloatArray, settings: SolverSettings) -> None:
+    def __init__(
+        self, design: Design, span: tuple[float, float], start: FloatArray, settings: SolverSettings
+    ) -> None:
         """Make room for it."""
         self._work, self._start = Workspace(N_STATES, settings.max_steps), start
         w = self._work
@@ -59,7 +61,12 @@ class Integration:
 
 def kernel_costs(design: Design, y: FloatArray) -> dict[str, float]:
     """Time the pieces of a step, each [s]."""
-    out, jac, lu, b = np.empty(N_STATES), np.zeros((N_STATES,) * 2), np.zeros((N_STATES,) * 2), np.zeros((1, N_STATES))
+    out, jac, lu, b = (
+        np.empty(N_STATES),
+        np.zeros((N_STATES,) * 2),
+        np.zeros((N_STATES,) * 2),
+        np.zeros((1, N_STATES)),
+    )
     pieces: dict[str, Callable[[], Any]] = {
         "rates": lambda: _rates_often(CALLS, y.copy(), design, out),
         "rates and Jacobian": lambda: _jacobian_often(CALLS, y.copy(), design, out, jac),

@@ -103,7 +103,7 @@ def by_solve_ivp(case: Case, rtol: float, method: str = "LSODA") -> FloatArray:
 
 
 def in_python(case: Case, rtol: float) -> FloatArray:
-    """The same as `by_odeint` from the kernels' Python source, within `uncompiled`: floats in lists, no numpy scalars."""
+    """The same as `by_odeint` from the kernels' Python source, within `uncompiled`; floats, no numpy scalars."""
     record = case.design[0]
     fields = {name: record[name] for name in COEFFICIENTS.names or ()}
     plain = {name: value.item() for name, value in fields.items() if not value.shape}

@@ -1,185 +1,234 @@
 """What an evaluation costs: ratios to named peers, measured in one run, at the accuracy each reaches.
 
-Run it with `python benchmarks/speed.py`; it takes a minute. The peers integrate the same compiled equations from the
-same start over the same second: `scipy.integrate.odeint` (LSODA, with the Jacobian), `solve_ivp(method="LSODA")`, and
-the same in plain Python. Designs: the feasible ones among Sobol points of the box of divider.yaml. Single-threaded.
+Run it with `python benchmarks/speed.py`. The reference alone takes four minutes: keep it with `--save FILE`, and give it
+with `--reference FILE` the next time; the rest takes two. The peers integrate the same compiled equations from the same
+settled start over the same second: `scipy.integrate.odeint` (LSODA, with the Jacobian), `solve_ivp(method="LSODA")`,
+the first in plain Python, and numbalsoda if it is installed. Whatever is compared is timed in turn, design by design.
 """
 
-import math
-import sys
-import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
-from functools import partial
-from typing import Any
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
-from scipy.integrate import odeint, solve_ivp
-from scipy.stats import qmc
+from designs import OBJECTIVES, ROUNDING, Box, exact_objectives, objectives_of, sobol_points
+from loops import kernel_costs, timed
+from peers import Case, Peer, by_odeint, by_solve_ivp, in_python, numbalsoda_peer, uncompiled
+from sharing import share
 from threadpoolctl import threadpool_limits
 
-from divideropt.campaign.load import default_campaign
-from divideropt.campaign.plan import build_problem
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import Divider, groove_kernels, kernels, solver_settings
-from divideropt.models.divider.kernels import jacobian, motion, rates
-from divideropt.models.divider.record import Design
-from divideropt.models.divider.response import Response
-from divideropt.models.divider.run_kernels import run
-from divideropt.ode.rosenbrock import Workspace
-from divideropt.problem import Problem
+from divideropt.models.divider import Divider
+from divideropt.ode.rodas5p import STAGES
 
-COUNT = 256
-OBJECTIVES = ("steady_state_error", "dynamic_error", "source_pressure")
-PYTHON_DESIGNS = 8
-"""Designs that plain Python integrates: it takes a third of a second for one."""
+LADDER = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8)
+"""Relative tolerances that a peer is tried at, from the loosest."""
 
-REPEATS = 5
+ODEINT, SOLVE_IVP = "scipy odeint (LSODA)", "scipy solve_ivp (LSODA)"
+PYTHON, NUMBALSODA = "scipy odeint (LSODA), plain Python", "numbalsoda (LSODA)"
+
+PYTHON_DESIGNS = 40
+"""Designs that plain Python integrates: it takes some milliseconds for one."""
+
+INNER, REPEATS = 5, 2
+"""Our integrations in one timing, and timings of everything, of which the least counts."""
+
+BATCHES = ((100, 200), (1_000, 20), (10_000, 4))
+"""Sizes of the batches that are shared, and rounds."""
+
+DYNAMIC = OBJECTIVES.index("dynamic_error")
+PARTS = ("peers", "worst", "kernels", "sharing")
 
 
-def main(count: int) -> None:
-    """Print the tables."""
-    problem = build_problem(default_campaign())
-    assert isinstance(problem.model, Divider)
+@dataclass(frozen=True)
+class Figure:
+    """A figure, and what is asked of it."""
+
+    what: str
+    value: float
+    wanted: float
+    at_least: bool = True
+
+    def __str__(self) -> str:
+        """Say whether it holds."""
+        holds = self.value >= self.wanted if self.at_least else self.value <= self.wanted
+        asked = f"{'at least' if self.at_least else 'at most'} {self.wanted:g}"
+        return f"{self.what}: {self.value:.3g}, {asked}: {'holds' if holds else 'falls short'}"
+
+
+def main(count: int, known: Path | None, keep: Path | None, parts: Sequence[str]) -> None:
+    """Print the tables, and at the end the figures."""
+    figures: list[Figure] = []
     with threadpool_limits(1):
-        designs = feasible(problem, problem.model, count)
-        print(f"{len(designs)} feasible designs of {count}")
-        accuracy(problem.model, designs)
-        right_hand_side(problem.model, designs[0])
-        speed(problem.model, designs)
+        box = sobol_points(count)
+        model, designs = box.model, box.designs[box.feasible]
+        print(f"{len(designs)} feasible designs among {count} Sobol points of the box of divider.yaml")
+        exact = exact_objectives(model, designs, known, keep)
+        ours = deviations(objectives_of(model, model.evaluate(designs)[0]), exact)
+        figures += accuracy(ours)
+        if "peers" in parts:
+            figures += peers(model, designs, exact, ours)
+        if "worst" in parts:
+            figures += worst(box)
+        if "kernels" in parts:
+            kernels(model, designs)
+        if "sharing" in parts:
+            figures += sharing(model, designs)
+    print("\nwhat is asked:")
+    print(*figures, sep="\n")
 
 
-def feasible(problem: Problem, model: Divider, count: int) -> list[dict[str, float]]:
-    """The feasible designs among the first Sobol points of the box, whole."""
-    unit = qmc.Sobol(len(problem.space), rng=0).random_base2(math.ceil(math.log2(count)))[:count]
-    points = qmc.scale(unit, problem.space.lower, problem.space.upper)
-    told = problem.tell(problem.simulate(points))
-    names = problem.space.names
-    return [dict(problem.fixed) | dict(zip(names, p, strict=True)) for p in points[told.feasible].tolist()]
+def deviations(objectives: FloatArray, exact: FloatArray) -> FloatArray:
+    """Return the relative deviations, infinite where there is no value, shape (n, 3)."""
+    off = np.abs(objectives / exact - 1.0)
+    return np.where(np.isnan(off), np.inf, off)
 
 
-def accuracy(model: Divider, designs: Sequence[dict[str, float]]) -> None:
-    """Compare the objectives with the reference solver's."""
-    matrix = np.array([list(p.values()) for p in designs])
-    places = [list(model.quantities).index(name) for name in OBJECTIVES]
-    exact = model.reference().evaluate(matrix)[0][:, places]
-    peer = replace(model, settings=solver_settings("LSODA", RTOL, max_steps=50_000))
-    for label, chosen in (("ours", model), (f"LSODA at {RTOL:g}", peer)):
-        off = np.abs(chosen.evaluate(matrix)[0][:, places] / exact - 1)
-        for name, column in zip(OBJECTIVES, off.T, strict=True):
-            middle = np.median(column)
-            print(f"{label}, {name}: deviation from Radau at 1e-10, worst {column.max():.1e}, median {middle:.1e}")
+def accuracy(ours: FloatArray) -> list[Figure]:
+    """Print how near the objectives come to Radau's at rtol 1e-10."""
+    print("\ndeviation from Radau at rtol 1e-10, at the default tolerance:")
+    for name, off in zip(OBJECTIVES, ours.T, strict=True):
+        print(f"  {name:20} worst {off.max():.1e}   median {np.median(off):.1e}")
+    return [Figure("worst deviation of an objective", float(ours.max()), 1e-4, at_least=False)]
 
 
-def right_hand_side(model: Divider, p: dict[str, float]) -> None:
-    """Time the right-hand side by itself."""
-    phase = model.respond(p).phases[-1]
-    assert phase.end is not None
-    out, jac, y, d = np.empty(9), np.zeros((9, 9)), phase.end, phase.design[0]
-    cost = timed(partial(motion, 0.0, y, d, out, jac), 20_000)
-    print(f"rates and Jacobian in one pass: {1e9 * cost:.0f} ns a call from Python, numba's unboxing included")
+def peers(model: Divider, designs: FloatArray, exact: FloatArray, ours: FloatArray) -> list[Figure]:
+    """Print what each peer costs where it comes as near as we do."""
+    cases = [Case.of(model, design) for design in designs]
+    states = np.median([len(case.times) for case in cases])
+    print("\nan integration alone, the same start and second; the peers give the states at the nodes of our steps, "
+          f"{states:.0f} in the median,\nwhich is what the metrics need; they are measured with our metrics, untimed")  # fmt: skip
+    ladder = Ladder(model, cases, exact, ours)
+    numbalsoda = numbalsoda_peer()
+    tolerance, ratio = ladder.climb(ODEINT, by_odeint)
+    figures = [Figure(f"times as fast as {ODEINT}", ratio, 20.0)]
+    ladder.climb(SOLVE_IVP, by_solve_ivp)
+    figures.append(Figure(f"times as fast as {PYTHON}", plain_python(cases[:PYTHON_DESIGNS], tolerance), 100.0))
+    if numbalsoda is None:
+        print(f"{NUMBALSODA}: not installed; pip install numbalsoda, which needs cmake, a C++ and a Fortran compiler")
+    else:
+        figures.append(Figure(f"times as fast as {NUMBALSODA}", ladder.climb(NUMBALSODA, numbalsoda)[1], 3.0))
+    return figures
 
 
-def speed(model: Divider, designs: Sequence[dict[str, float]]) -> None:
-    """Time integrations and whole evaluations, medians over the designs."""
-    cases = [(response, phase_start(response)) for response in map(model.respond, designs)]
-    ours = [timed(partial(by_rosenbrock, model, r, y), REPEATS) for r, y in cases]
-    whole = [timed(partial(model.evaluate, np.array([list(p.values())])), REPEATS) for p in designs]
-    print(f"integration: median {1e6 * np.median(ours):.0f} µs, worst {max(ours) / np.median(ours):.1f} times that")
-    print(f"evaluation, with equilibria, margins and metrics: median {1e6 * np.median(whole):.0f} µs, worst "
-          f"{max(whole) / np.median(whole):.1f} times that; {1 / np.median(whole):.0f} a second")  # fmt: skip
-    peers: dict[str, Callable[[Design, FloatArray], Any]] = {
-        "scipy odeint (LSODA), same compiled functions": by_odeint,
-        "scipy solve_ivp (LSODA), same compiled functions": by_solve_ivp,
-    }
-    for name, peer in peers.items():
-        costs = [timed(partial(peer, r.phases[-1].design, y), REPEATS) for r, y in cases]
-        print(f"{name}: median {1e6 * np.median(costs):.0f} µs, {np.median(np.array(costs) / ours):.1f} times ours")
-    few = cases[:PYTHON_DESIGNS]
+@dataclass(frozen=True)
+class Ladder:
+    """Designs over which a peer is tried at one tolerance after the other.
+
+    Attributes:
+        model: The valve.
+        cases: Its responses to the designs.
+        exact: Their objectives, shape (n, 3).
+        ours: Our deviations from these, shape (n, 3).
+    """
+
+    model: Divider
+    cases: Sequence[Case]
+    exact: FloatArray
+    ours: FloatArray
+
+    def climb(self, name: str, peer: Peer) -> tuple[float, float]:
+        """Print a peer's rungs, up to one beyond the loosest at which it is as near as we are.
+
+        Returns:
+            That tolerance, and the ratio of the median times there.
+        """
+        print(f"\n{name}: dynamic error's deviation, median times, ratio")
+        chosen, ratio = np.nan, np.nan
+        for rtol in LADDER:
+            off, theirs, own = self.rung(peer, rtol)
+            as_near = self.as_near(off)
+            quotient = np.median(theirs) / np.median(own)
+            mark = " <- as near as ours" if as_near and np.isnan(chosen) else ""
+            print(
+                f"  rtol {rtol:.0e}   worst {off[:, DYNAMIC].max():.1e}   median {np.median(off[:, DYNAMIC]):.1e}   "
+                f"{1e6 * np.median(theirs):6.0f} µs to {1e6 * np.median(own):4.1f} µs   {quotient:5.1f}{mark}"
+            )
+            if not np.isnan(chosen):
+                break
+            if as_near:
+                chosen, ratio = rtol, quotient
+        return chosen, ratio
+
+    def rung(self, peer: Peer, rtol: float) -> tuple[FloatArray, list[float], list[float]]:
+        """Return a peer's deviations, shape (n, 3), its times and ours [s]."""
+        quantities, theirs, own = [], [], []
+        peer(self.cases[0], rtol)
+        for case in self.cases:
+            quantities.append(case.measured(peer(case, rtol)))
+            costs = [(case.ours.cost(INNER), timed(lambda case=case: peer(case, rtol))) for _ in range(REPEATS)]
+            mine, its = np.min(costs, axis=0).tolist()
+            own.append(mine)
+            theirs.append(its)
+        return deviations(objectives_of(self.model, np.array(quantities)), self.exact), theirs, own
+
+    def as_near(self, off: FloatArray) -> bool:
+        """Whether deviations are no larger than ours, at the worst and in the median, of each objective."""
+        at_worst = off.max(axis=0) <= np.maximum(self.ours.max(axis=0), ROUNDING)
+        in_median = np.median(off, axis=0) <= np.maximum(np.median(self.ours, axis=0), ROUNDING)
+        return bool(at_worst.all() and in_median.all())
+
+
+def plain_python(cases: Sequence[Case], rtol: float) -> float:
+    """Print what the equations' Python source costs in odeint; return the ratio of the median times."""
     with uncompiled():
-        costs = [timed(partial(in_python, r.phases[-1].design, y), 1) for r, y in few]
-    ratio = np.median(np.array(costs) / ours[: len(few)])
-    print(f"scipy solve_ivp (LSODA), plain Python: median {1e3 * np.median(costs):.0f} ms, {ratio:.0f} times ours")
+        costs = [(case.ours.cost(INNER), timed(lambda case=case: in_python(case, rtol))) for case in cases]
+    own, theirs = np.median(costs, axis=0).tolist()
+    print(f"\n{PYTHON}: rtol {rtol:.0e}, the same steps and states as compiled; {len(cases)} designs:\n"
+          f"  {1e6 * theirs:.0f} µs to {1e6 * own:.1f} µs   {theirs / own:.0f}")  # fmt: skip
+    return theirs / own
 
 
-def phase_start(response: Response) -> FloatArray:
-    """State from which the step is simulated."""
-    start = response.phases[0].end
-    assert start is not None
-    return start
-
-
-def by_rosenbrock(model: Divider, response: Response, start: FloatArray) -> None:
-    """The integration as the model does it."""
-    s, atol = model.settings, np.array(model.settings.atol)
-    w = Workspace(9, s.max_steps)
-    w.state[:] = start
-    design = response.phases[-1].design
-    run(design, 0.0, 1.0, s.max_steps, w.s, w.k, w.state, w.u, w.U, s.rtol, atol, np.inf, w.edges, w.values)
-
-
-_ODEINT: Any = odeint
-_SOLVE_IVP: Any = solve_ivp
-
-RTOL = 1e-6
-"""At which LSODA comes about as near to the dynamic error as the default does."""
-
-SCALE = np.array([1e6] * 5 + [1e-2, 1e-4] + [1e6] * 2)
-
-
-def by_odeint(design: Design, start: FloatArray) -> None:
-    """SciPy's wrapper of LSODA in Fortran's own loop."""
-    times = np.linspace(0.0, 1.0, 201)
-    _ODEINT(rates, start, times, (design,), jacobian, tfirst=True, rtol=RTOL, atol=RTOL * SCALE, mxstep=100_000)
-
-
-def by_solve_ivp(design: Design, start: FloatArray) -> None:
-    """SciPy's LSODA in a Python loop."""
-    _SOLVE_IVP(rates, (0.0, 1.0), start, "LSODA", args=(design,), jac=jacobian, rtol=RTOL, atol=RTOL * SCALE)
-
-
-def in_python(design: Design, start: FloatArray) -> None:
-    """The same, with the equations' Python source."""
-    _SOLVE_IVP(
-        kernels.rates.py_func,
-        (0.0, 1.0),
-        start,
-        "LSODA",
-        args=(design,),
-        jac=kernels.jacobian.py_func,
-        rtol=RTOL,
-        atol=RTOL * SCALE,
+def worst(box: Box) -> list[Figure]:
+    """Print what a whole evaluation costs: the batch, and each design of the box in a batch of its own kind."""
+    model, feasible = box.model, box.designs[box.feasible]
+    batch = timed(lambda: model.evaluate(feasible), REPEATS) / len(feasible)
+    costs = np.array(
+        [timed(lambda row=row: model.evaluate(np.tile(row, (INNER, 1))), REPEATS) for row in box.designs]
     )
+    costs /= INNER
+    median, largest = np.median(costs), costs.max()
+    print("\nwhole evaluations, with rests, margins, metrics and verdicts, on one thread:")
+    print(f"  all feasible designs in one batch: {1e6 * batch:.1f} µs a design, {1 / batch:.0f} a second")
+    print(f"  feasible designs, {INNER} times the same in a batch: median {1e6 * np.median(costs[box.feasible]):.1f} µs, "
+          f"worst {1e6 * costs[box.feasible].max():.0f} µs")  # fmt: skip
+    print(f"  all {len(costs)} designs of the box: median {1e6 * median:.1f} µs, worst {1e6 * largest:.0f} µs")
+    return [Figure("worst design of the box, in medians", float(largest / median), 50.0, at_least=False)]
 
 
-@contextmanager
-def uncompiled() -> Iterator[None]:
-    """Let the kernels' Python sources call each other's."""
-    called = [
-        (module, name, f)
-        for module in (kernels, groove_kernels)
-        for name, f in vars(module).items()
-        if hasattr(f, "py_func") and name not in ("rates", "jacobian")
-    ]
-    for module, name, f in called:
-        setattr(module, name, f.py_func)
-    try:
-        yield
-    finally:
-        for module, name, f in called:
-            setattr(module, name, f)
+def kernels(model: Divider, designs: FloatArray) -> None:
+    """Print what the pieces of a step cost, in the median over some designs, and what of a step they make."""
+    cases = [Case.of(model, design) for design in designs[:PYTHON_DESIGNS]]
+    pieces = [kernel_costs(case.design, case.start) for case in cases]
+    cost = {name: float(np.median([piece[name] for piece in pieces])) for name in pieces[0]}
+    step = float(np.median([case.ours.cost(INNER) / (len(case.edges) - 1) for case in cases]))
+    made_of = (
+        cost["rates and Jacobian"] + (STAGES - 1) * cost["rates"] + cost["factorisation"] + STAGES * cost["solution"]
+    )
+    print("\nthe pieces of a step, from compiled loops, medians:")
+    print(*(f"  {name}: {1e9 * value:.0f} ns" for name, value in cost.items()), sep="\n")
+    print(f"  a step that is kept: {1e9 * step:.0f} ns, rejected ones among them; one Jacobian, {STAGES - 1} rates, one "
+          f"factorisation and {STAGES} solutions make {1e9 * made_of:.0f} ns")  # fmt: skip
 
 
-def timed(call: Callable[[], Any], repeats: int) -> float:
-    """Least time of a call [s]."""
-    best = np.inf
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        call()
-        best = min(best, time.perf_counter() - begin)
-    return float(best)
+def sharing(model: Divider, designs: FloatArray) -> list[Figure]:
+    """Print what two threads give, and two processes as the most that this machine can."""
+    print("\nbatches on two threads, and in two processes as the most that this machine's cores give:")
+    found = share(model, designs, BATCHES)
+    for s in found:
+        print(f"  {s.count:6} designs: one thread {1e3 * s.one:.2f} ms; two threads {s.one / s.threads:.2f} times as fast, "
+              f"two processes {s.one / s.processes:.2f} times")  # fmt: skip
+    return [Figure(f"two threads to one, {s.count} designs", s.one / s.threads, 1.8) for s in found]
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=2000, help="Sobol points")
+    parser.add_argument("--reference", type=Path, help="take the exact objectives from this file")
+    parser.add_argument("--save", type=Path, help="keep the exact objectives in this file")
+    parser.add_argument(
+        "--parts", nargs="+", choices=PARTS, default=PARTS, help="what is measured beside the accuracy"
+    )
+    given = parser.parse_args()
+    main(given.count, given.reference, given.save, given.parts)

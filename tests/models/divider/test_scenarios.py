@@ -69,7 +69,10 @@ def test_the_reference_has_the_same_columns(design) -> None:
 
 def test_threads_share_the_batches_of_every_scenario(box_designs) -> None:
     designs = np.array([list(p.values()) for p in box_designs(12)])
-    models = {BASE: Divider(), "cold": Divider(scenario=Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),)))}
+    models = {
+        BASE: Divider(),
+        "cold": Divider(scenario=Scenario(settled=False, events=(load_step(1, 15e6, at=0.05),))),
+    }
     alone = Scenarios(models)
     shared = alone.on_threads(2)
     assert shared is not None
