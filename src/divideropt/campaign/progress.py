@@ -16,7 +16,7 @@ from rich.table import Table
 from divideropt.analysis import best_attainment, hypervolume, nondominated
 from divideropt.campaign.execute import Progress
 from divideropt.models.base import FloatArray
-from divideropt.problem import Problem
+from divideropt.problem import Problem, Told
 
 WRITE_SECONDS = 0.5
 """How often a run says where it is."""
@@ -63,7 +63,7 @@ class Reporter:
         self._done = self._replayed = 0
         self._best: float | None = None
         self._front = np.empty((0, len(problem.objectives)))
-        self._fresh: list[FloatArray] = []
+        self._fresh: list[Told] = []
         self._began = self._written = time.monotonic()
 
     def __call__(self, progress: Progress) -> None:
@@ -73,10 +73,7 @@ class Reporter:
         if progress.replayed:
             self._replayed += n
             self._began = time.monotonic()
-        best = best_attainment(progress.told, self._problem)
-        if best is not None and (self._best is None or best[1] < self._best):
-            self._best = best[1]
-        self._fresh.append(progress.told.F[progress.told.feasible])
+        self._fresh.append(progress.told)
         if time.monotonic() - self._written >= WRITE_SECONDS:
             self.write(finished=False)
 
@@ -92,9 +89,14 @@ class Reporter:
             return
 
     def _standing(self, finished: bool) -> Standing:
-        self._front = np.concatenate([self._front, *self._fresh])
-        self._front = self._front[nondominated(self._front)]
-        self._fresh = []
+        if self._fresh:
+            told = Told(*(np.concatenate(parts) for parts in zip(*((t.F, t.G) for t in self._fresh), strict=True)))
+            self._fresh = []
+            best = best_attainment(told, self._problem)
+            if best is not None and (self._best is None or best[1] < self._best):
+                self._best = best[1]
+            front = np.concatenate([self._front, told.F[told.feasible]])
+            self._front = front[nondominated(front)]
         elapsed = time.monotonic() - self._began
         fresh = self._done - self._replayed
         volume = None if self._reference is None else hypervolume(self._front, self._reference)

@@ -102,31 +102,53 @@ def _lattice(dimension: int, total: int) -> Iterator[tuple[int, ...]]:
 
 
 class _Archive:
-    """Everything a run was told, which also sets the scale of the objectives."""
+    """What a sweep keeps of all that it was told: what can be nearest to a direction, and what sets the scale.
+
+    That is the front, since a dominated design is nowhere nearer than one that dominates it; before anything is
+    feasible, the design of least violation, and the front of the infeasible.
+
+    Attributes:
+        X: The designs kept, in the order in which they were told.
+        told: What was told of them.
+    """
 
     def __init__(self, problem: Problem, evaluate: Evaluate) -> None:
         self._evaluate = evaluate
+        self._fresh: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self._front = np.empty((0, len(problem.objectives)))
         self.X = np.empty((0, len(problem.space)))
-        self.told = Told(np.empty((0, len(problem.objectives))), np.empty((0, problem.constraint_count)))
+        self.told = Told(self._front, np.empty((0, problem.constraint_count)))
 
     def score(self, designs: FloatArray) -> Told:
+        """Evaluate designs; they are kept with the next `settle`."""
         told = self._evaluate(designs)
-        self.X = np.concatenate([self.X, designs])
-        self.told = Told(np.concatenate([self.told.F, told.F]), np.concatenate([self.told.G, told.G]))
+        self._fresh.append((designs.copy(), told.F, told.G))
         return told
+
+    def settle(self) -> None:
+        """Keep what is worth it."""
+        old = (self.X, self.told.F, self.told.G)
+        X, F, G = (np.concatenate(parts) for parts in zip(old, *self._fresh, strict=True))
+        told = Told(F, G)
+        kept = np.flatnonzero(told.feasible)
+        if len(kept):
+            kept = kept[moocore.is_nondominated(F[kept])]
+            self._front = F[kept]
+        else:
+            front = np.concatenate([self._front, *(F for _, F, _ in self._fresh)])
+            self._front = front[moocore.is_nondominated(front)]
+            kept = np.array([merit(np.zeros(len(F)), told).argmin()])
+        self.X, self.told, self._fresh = X[kept], Told(F[kept], G[kept]), []
 
     def ideal_and_span(self) -> tuple[FloatArray, FloatArray]:
         """Ideal point of the front found so far, and its extent, 1 where it has none."""
-        F = self.told.F[self.told.feasible]
-        if len(F) == 0:
-            F = self.told.F
-        front = F[moocore.is_nondominated(F)]
-        span = np.ptp(front, axis=0)
-        return front.min(axis=0), np.where(span > 0, span, 1.0)
+        span = np.ptp(self._front, axis=0)
+        return self._front.min(axis=0), np.where(span > 0, span, 1.0)
 
 
 def _visit(direction: FloatArray, archive: _Archive, problem: Problem, random: np.random.Generator) -> None:
     """Improve the answer to one direction's problem by a complex that is given `VISIT` evaluations a variable."""
+    archive.settle()
     ideal, span = archive.ideal_and_span()
     spent, granted = 0, VISIT * len(problem.space)
 
