@@ -8,7 +8,7 @@ from typing import TextIO
 import numpy as np
 from joblib import Parallel, delayed, parallel_config
 
-from divideropt.analysis import Tally, combined_front, run_front, tally, worth_verifying
+from divideropt.analysis import Tally, combined_front, summarise, tally, worth_verifying
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
@@ -156,7 +156,7 @@ class Runner:
     def _write_fronts(self, problem: Problem, verifier: Verifier) -> Outcomes:
         schema = verifier.schema
         names = sorted(run.name for run in plan_runs(self._campaign))
-        fronts = {name: run_front(self._store.log(name, schema).table(), problem, schema) for name in names}
+        fronts = {name: summarise(self._store.log(name, schema).read(), problem, schema).front for name in names}
         combined = combined_front(list(fronts.values()), problem, schema)
         wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
         written = verifier.verify(fronts | {"combined": combined}, wanted)
