@@ -1,7 +1,7 @@
 """What a campaign costs around its simulations: ratios measured in one run.
 
 `python benchmarks/campaign.py` takes a minute or two and prints (a) the floor: the campaign's strategies on a problem
-that costs nothing, NSGA-II by pymoo's own ask and tell, the others' own loops; (b) the simulations: the designs of the
+that costs nothing, NSGA-II by pymoo's own ask and tell, the others own loops; (b) the simulations: the designs of the
 campaign in large batches; (c) `divideropt run` from end to end with its report, and c/(a + b). All use as many
 processes as the campaign. The points that `run` verifies are known beforehand in (c); their time is printed apart.
 
