@@ -123,7 +123,9 @@ class Runner:
             return self._one_process_a_run(runs)
 
     def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
-        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in runs)
+        """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
+        longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
+        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in longest)
         pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
         return list(pool(tasks))
 
