@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from divideropt.problem import Told
+from divideropt.problem import Told, merit
 from divideropt.strategies import goal_attainment
 from divideropt.strategies.goal_attainment import SMALLEST_WEIGHT, GoalAttainment, reference_directions
 from toy_model import toy_problem
@@ -46,14 +46,19 @@ class Everything(goal_attainment._Archive):
     """Keeps all it was told, as the method is defined."""
 
     def settle(self):
-        X, F, G = zip((self.X, self.told.F, self.told.G), *self._fresh, strict=True)
-        self.X, self.told, self._fresh = np.concatenate(X), Told(np.concatenate(F), np.concatenate(G)), []
-        feasible = self.told.F[self.told.feasible]
-        self._front = feasible if len(feasible) else self.told.F
-        dominated = [
-            ((f <= g).all(axis=1) & (f < g).any(axis=1)).any() for f, g in ((self._front, g) for g in self._front)
-        ]
-        self._front = self._front[~np.array(dominated)]
+        self.X = np.concatenate([designs for designs, _ in self._fresh])
+        self.told = Told(*(np.concatenate([getattr(t, name) for _, t in self._fresh]) for name in "FG"))
+
+    def ideal_and_span(self):
+        F = self.told.F[self.told.feasible] if self.told.feasible.any() else self.told.F
+        dominated = [((f >= F).all(axis=1) & (f > F).any(axis=1)).any() for f in F]
+        front = F[~np.array(dominated)]
+        span = np.ptp(front, axis=0)
+        return front.min(axis=0), np.where(span > 0, span, 1.0)
+
+    def nearest(self, value):
+        known = merit(value(self.told.F), self.told)
+        return self.X[known.argmin()], known.min()
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -19,7 +19,10 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import Problem, Told
 
 WRITE_SECONDS = 0.5
-"""How often a run says where it is."""
+"""How often a run says where it is, or less often, where that costs a share of its time that matters: """
+
+WRITE_SHARE = 0.03
+"""at most this."""
 
 SHOW_SECONDS = 0.5
 """How often a terminal is repainted."""
@@ -65,6 +68,7 @@ class Reporter:
         self._front = np.empty((0, len(problem.objectives)))
         self._fresh: list[Told] = []
         self._began = self._written = time.monotonic()
+        self._took = 0.0
 
     def __call__(self, progress: Progress) -> None:
         """Hear of a batch."""
@@ -74,8 +78,9 @@ class Reporter:
             self._replayed += n
             self._began = time.monotonic()
         self._fresh.append(progress.told)
-        if time.monotonic() - self._written >= WRITE_SECONDS:
+        if time.monotonic() - self._written >= max(WRITE_SECONDS, self._took / WRITE_SHARE):
             self.write(finished=False)
+            self._took = time.monotonic() - self._written
 
     def write(self, *, finished: bool) -> None:
         """Write the standing; a disk that refuses does not matter here."""
