@@ -68,7 +68,8 @@ def whole(text: str, folder: Path) -> None:
     (folder / "campaign.yaml").write_text(text, encoding="utf-8")
     called("simulate", "--out", folder / "response.csv")  # compiles, where that has not been done
     first = called("run", folder / "campaign.yaml", "--store", folder / "first")
-    shutil.copytree(folder / "first" / "verification", folder / "second" / "verification")
+    if (folder / "first" / "verification").is_dir():
+        shutil.copytree(folder / "first" / "verification", folder / "second" / "verification")
     second = called("run", folder / "campaign.yaml", "--store", folder / "second")
     report = called("report", folder / "second")
     designs = logged(Store(folder / "second"), build_problem(campaign), runs)

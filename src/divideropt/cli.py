@@ -81,13 +81,13 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
     runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr, again)
     try:
-        front = runner.run(fresh=fresh).front
+        done = runner.run(fresh=fresh)
     except NoFeasibleDesignError:
         _say(f"report: {write_report(Store(folder))}")
         raise
-    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({front.points} designs)")
-    _say(_counted(front))
-    _say(f"report: {write_report(Store(folder))}")
+    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.front.points} designs)")
+    _say(_counted(done.front))
+    _say(f"report: {write_report(done.store, logs=done.logs)}")
 
 
 @commands.command()

@@ -115,11 +115,12 @@ class ReportData:
         return sum(design.valid is False for design in self.front)
 
 
-def read_report(store: Store) -> ReportData:
+def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> ReportData:
     """Read a store, finished or not.
 
     Args:
         store: The store.
+        logs: Each run's log, summed up, where the caller knows; read if not given.
 
     Returns:
         What its report says.
@@ -133,7 +134,8 @@ def read_report(store: Store) -> ReportData:
     campaign = stored_campaign(store)
     problem, runs = build_problem(campaign), plan_runs(campaign)
     schema = TableSchema.of(problem)
-    logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
+    if logs is None:
+        logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     facts = tuple(read_run(run, logs[run.name], reference) for run in runs)
