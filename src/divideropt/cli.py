@@ -81,13 +81,13 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
     runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr, again)
     try:
-        front = runner.run(fresh=fresh).front
+        done = runner.run(fresh=fresh)
     except NoFeasibleDesignError:
         _say(f"report: {write_report(Store(folder))}")
         raise
-    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({front.points} designs)")
-    _say(_counted(front))
-    _say(f"report: {write_report(Store(folder))}")
+    _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.front.points} designs)")
+    _say(_counted(done.front))
+    _say(f"report: {write_report(done.store, logs=done.logs)}")
 
 
 @commands.command()
@@ -99,6 +99,7 @@ def verify(store: Path, workers: int | None) -> None:
     from divideropt.report import write_report
     from divideropt.store import Store
 
+    _say_when_compiling()
     again = shlex.join(["divideropt", "verify", str(store)])
     count = verify_store(Store(store), workers, sys.stderr, again)
     _say(f"report: {write_report(Store(store))}")
@@ -139,6 +140,7 @@ def report(store: Path, out: Path | None) -> None:
     from divideropt.report import write_report
     from divideropt.store import Store
 
+    _say_when_compiling()
     _say(f"report: {write_report(Store(store), out)}")
 
 
@@ -219,9 +221,19 @@ def schema() -> None:
 
 
 def _load(path: Path | None) -> "Campaign":
-    from divideropt.campaign.load import default_campaign, load_campaign
+    from divideropt.campaign.reader import read_document
 
-    return default_campaign() if path is None else load_campaign(path)
+    document = None if path is None else read_document(path)  # before the rest is imported, which takes a second
+    from divideropt.campaign.load import campaign_of, default_campaign
+
+    _say_when_compiling()
+    return default_campaign() if document is None else campaign_of(document)
+
+
+def _say_when_compiling() -> None:
+    from divideropt.campaign.compiling import say_when_compiling
+
+    say_when_compiling(sys.stderr)
 
 
 def _check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None) -> None:

@@ -1,5 +1,8 @@
 import numpy as np
+import pytest
 
+from divideropt.problem import Told, merit
+from divideropt.strategies import goal_attainment
 from divideropt.strategies.goal_attainment import SMALLEST_WEIGHT, GoalAttainment, reference_directions
 from toy_model import toy_problem
 
@@ -37,3 +40,44 @@ def test_the_sweep_solves_the_problem_of_each_direction():
             assert best < 1.05 * optimum
         else:  # an end of the front, where the optimum is 0
             assert best * direction.min() < 0.02
+
+
+class Everything(goal_attainment._Archive):
+    """Keeps all it was told, as the method is defined."""
+
+    def settle(self):
+        self.X = np.concatenate([designs for designs, _ in self._fresh])
+        self.told = Told(*(np.concatenate([getattr(t, name) for _, t in self._fresh]) for name in "FG"))
+
+    def ideal_and_span(self):
+        F = self.told.F[self.told.feasible] if self.told.feasible.any() else self.told.F
+        dominated = [((f >= F).all(axis=1) & (f > F).any(axis=1)).any() for f in F]
+        front = F[~np.array(dominated)]
+        span = np.ptp(front, axis=0)
+        return front.min(axis=0), np.where(span > 0, span, 1.0)
+
+    def nearest(self, value):
+        known = merit(value(self.told.F), self.told)
+        return self.X[known.argmin()], known.min()
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("limit", [0.0, 0.999, 2.0])
+def test_what_the_sweep_forgets_would_have_changed_no_bit(seed, limit, monkeypatch):
+    """Also where most designs are infeasible at first (0.999), or all (2)."""
+    problem = toy_problem()
+
+    def asked():
+        batches = []
+
+        def evaluate(designs):
+            batches.append(designs.tobytes())
+            told = problem.tell(problem.simulate(designs))
+            return Told(told.F, np.maximum(told.G, (limit - designs[:, 2])[:, None]))
+
+        GoalAttainment(directions=7, evaluations=900).run(problem, evaluate, seed)
+        return batches
+
+    few = asked()
+    monkeypatch.setattr(goal_attainment, "_Archive", Everything)
+    assert few == asked()

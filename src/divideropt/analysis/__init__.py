@@ -1,10 +1,12 @@
 """What can be said of a store's evaluations: fronts, indicators."""
 
-from divideropt.analysis.fronts import combined_front, nondominated, run_front
+from divideropt.analysis.fronts import combined_front, nondominated
 from divideropt.analysis.indicators import best_attainment, hypervolume, hypervolume_history
+from divideropt.analysis.summary import Summary, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
+    "Summary",
     "Tally",
     "Verified",
     "best_attainment",
@@ -13,7 +15,7 @@ __all__ = [
     "hypervolume_history",
     "marked",
     "nondominated",
-    "run_front",
+    "summarise",
     "tally",
     "worth_verifying",
 ]

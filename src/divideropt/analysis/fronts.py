@@ -1,4 +1,4 @@
-"""Fronts: the feasible non-dominated designs of a run, and of all runs together."""
+"""Fronts: the non-dominated among designs, and the front of several runs together."""
 
 from collections.abc import Sequence
 
@@ -9,23 +9,6 @@ import pyarrow as pa
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.store import TableSchema
-
-
-def run_front(log: pa.Table, problem: Problem, schema: TableSchema) -> pa.Table:
-    """Select the front of one run.
-
-    Args:
-        log: The run's evaluations, in their order.
-        problem: What was optimised.
-        schema: The log's columns.
-
-    Returns:
-        The feasible non-dominated rows in the order of evaluation, the first of equals, without `batch`.
-    """
-    told = problem.tell(schema.evaluations(log))
-    feasible = np.flatnonzero(told.feasible)
-    keep = feasible[nondominated(told.F[feasible])]
-    return log.take(pa.array(keep)).drop_columns(["batch"])
 
 
 def combined_front(fronts: Sequence[pa.Table], problem: Problem, schema: TableSchema) -> pa.Table:

@@ -8,7 +8,7 @@ import numpy as np
 from divideropt.campaign.plan import Run
 from divideropt.errors import StoreError
 from divideropt.models.base import FloatArray
-from divideropt.problem import Evaluations, Problem, Told
+from divideropt.problem import Evaluations, Problem, Told, one_thread
 from divideropt.store import RunLog
 
 Simulate = Callable[[FloatArray], Evaluations]
@@ -74,7 +74,8 @@ def execute(
         return told
 
     try:
-        run.options.run(problem, evaluate, run.seed)
+        with one_thread():
+            run.options.run(problem, evaluate, run.seed)
         leftover = next(logged, None)
         if leftover is not None:
             raise StoreError(

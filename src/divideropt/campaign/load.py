@@ -30,12 +30,12 @@ def load_campaign(path: Path | str) -> Campaign:
         UsageError: The file cannot be read.
         FileMistakes: Everything wrong in the file, in the order of its lines.
     """
-    return _campaign(read_document(path))
+    return campaign_of(read_document(path))
 
 
 def parse_campaign(text: str, path: str = "campaign") -> Campaign:
     """Read a campaign from its text; `path` names it in mistakes. Otherwise as `load_campaign`."""
-    return _campaign(read_text(text, path))
+    return campaign_of(read_text(text, path))
 
 
 def stored_campaign(store: Store) -> Campaign:
@@ -62,7 +62,8 @@ def default_text() -> str:
     return files("divideropt.campaign").joinpath("divider.yaml").read_text("utf-8")
 
 
-def _campaign(document: Document) -> Campaign:
+def campaign_of(document: Document) -> Campaign:
+    """Make a campaign of what has been read; raises as `load_campaign`."""
     found = list(document.mistakes)
     try:
         tables = _tables(document)

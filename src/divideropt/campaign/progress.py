@@ -16,10 +16,13 @@ from rich.table import Table
 from divideropt.analysis import best_attainment, hypervolume, nondominated
 from divideropt.campaign.execute import Progress
 from divideropt.models.base import FloatArray
-from divideropt.problem import Problem
+from divideropt.problem import Problem, Told
 
 WRITE_SECONDS = 0.5
-"""How often a run says where it is."""
+"""How often a run says where it is, or less often, where that costs a share of its time that matters: """
+
+WRITE_SHARE = 0.03
+"""at most this."""
 
 SHOW_SECONDS = 0.5
 """How often a terminal is repainted."""
@@ -63,8 +66,9 @@ class Reporter:
         self._done = self._replayed = 0
         self._best: float | None = None
         self._front = np.empty((0, len(problem.objectives)))
-        self._fresh: list[FloatArray] = []
+        self._fresh: list[Told] = []
         self._began = self._written = time.monotonic()
+        self._took = 0.0
 
     def __call__(self, progress: Progress) -> None:
         """Hear of a batch."""
@@ -73,12 +77,10 @@ class Reporter:
         if progress.replayed:
             self._replayed += n
             self._began = time.monotonic()
-        best = best_attainment(progress.told, self._problem)
-        if best is not None and (self._best is None or best[1] < self._best):
-            self._best = best[1]
-        self._fresh.append(progress.told.F[progress.told.feasible])
-        if time.monotonic() - self._written >= WRITE_SECONDS:
+        self._fresh.append(progress.told)
+        if time.monotonic() - self._written >= max(WRITE_SECONDS, self._took / WRITE_SHARE):
             self.write(finished=False)
+            self._took = time.monotonic() - self._written
 
     def write(self, *, finished: bool) -> None:
         """Write the standing; a disk that refuses does not matter here."""
@@ -92,9 +94,14 @@ class Reporter:
             return
 
     def _standing(self, finished: bool) -> Standing:
-        self._front = np.concatenate([self._front, *self._fresh])
-        self._front = self._front[nondominated(self._front)]
-        self._fresh = []
+        if self._fresh:
+            told = Told(*(np.concatenate(parts) for parts in zip(*((t.F, t.G) for t in self._fresh), strict=True)))
+            self._fresh = []
+            best = best_attainment(told, self._problem)
+            if best is not None and (self._best is None or best[1] < self._best):
+                self._best = best[1]
+            front = np.concatenate([self._front, told.F[told.feasible]])
+            self._front = front[nondominated(front)]
         elapsed = time.monotonic() - self._began
         fresh = self._done - self._replayed
         volume = None if self._reference is None else hypervolume(self._front, self._reference)

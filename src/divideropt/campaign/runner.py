@@ -1,6 +1,6 @@
 """Runs a campaign: its runs in parallel, then the fronts, whose points of interest are verified."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
@@ -8,7 +8,7 @@ from typing import TextIO
 import numpy as np
 from joblib import Parallel, delayed, parallel_config
 
-from divideropt.analysis import Tally, combined_front, run_front, tally, worth_verifying
+from divideropt.analysis import Summary, Tally, combined_front, summarise, tally, worth_verifying
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
@@ -33,10 +33,12 @@ class Outcomes:
     Attributes:
         store: The store.
         front: The designs on the combined front, counted.
+        logs: Each run's log, summed up.
     """
 
     store: Store
     front: Tally
+    logs: Mapping[str, Summary]
 
 
 class Runner:
@@ -123,7 +125,9 @@ class Runner:
             return self._one_process_a_run(runs)
 
     def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
-        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in runs)
+        """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
+        longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
+        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in longest)
         pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
         return list(pool(tasks))
 
@@ -156,7 +160,8 @@ class Runner:
     def _write_fronts(self, problem: Problem, verifier: Verifier) -> Outcomes:
         schema = verifier.schema
         names = sorted(run.name for run in plan_runs(self._campaign))
-        fronts = {name: run_front(self._store.log(name, schema).table(), problem, schema) for name in names}
+        logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
+        fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)
         wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
         written = verifier.verify(fronts | {"combined": combined}, wanted)
@@ -165,4 +170,4 @@ class Runner:
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
             )
-        return Outcomes(self._store, tally(written["combined"], schema))
+        return Outcomes(self._store, tally(written["combined"], schema), logs)

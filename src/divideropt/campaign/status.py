@@ -1,9 +1,8 @@
 """What a store holds and lacks: the work of `divideropt status`."""
 
-from collections import Counter
 from dataclasses import dataclass
 
-from divideropt.analysis import best_attainment, hypervolume_history, tally
+from divideropt.analysis import hypervolume_history, summarise, tally
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.store import Store, TableSchema
@@ -65,19 +64,18 @@ def read_status(store: Store) -> StoreStatus:
     schema, reference = TableSchema.of(problem), reference_of(campaign)
     runs = []
     for run in plan_runs(campaign):
-        table = store.log(run.name, schema).table()
-        told = problem.tell(schema.evaluations(table))
-        best = best_attainment(told, problem)
+        found = summarise(store.log(run.name, schema).read(), problem, schema)
+        volumes = [] if reference is None else hypervolume_history(found.told, reference, [found.evaluations])
         runs.append(
             RunStatus(
                 run=run.name,
-                evaluations=table.num_rows,
+                evaluations=found.evaluations,
                 budget=run.options.budget,
-                feasible=int(told.feasible.sum()),
-                outcomes=dict(sorted(Counter(table["outcome"].to_pylist()).items())),
-                best=None if best is None else best[1],
-                best_design=None if best is None else table["design_id"][best[0]].as_py(),
-                hypervolume=None if reference is None else hypervolume_history(told, reference, [table.num_rows])[0],
+                feasible=int(found.told.feasible.sum()),
+                outcomes=dict(sorted(found.outcomes.items())),
+                best=None if found.best is None else found.best.value,
+                best_design=None if found.best is None else found.best.design["design_id"][0].as_py(),
+                hypervolume=volumes[0] if volumes else None,
             )
         )
     front = store.read_front("combined", schema)

@@ -12,7 +12,7 @@ from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.campaign.plan import build_problem, dividers, plan_runs
 from divideropt.campaign.progress import Counter
 from divideropt.campaign.reference import reference_problem
 from divideropt.campaign.worker import STOP_FILE, simulate_again, warm_up
@@ -157,6 +157,8 @@ class Verifier:
         if self._workers == 1:
             yield from (reference.simulate(design[None]) for design in asked)
             return
+        if dividers(reference.model):  # a model of somebody's own has nothing of ours to compile
+            warm_up(reference)
         with parallel_config(backend="loky", inner_max_num_threads=1), self._interruption.workers():
             pool = Parallel(n_jobs=self._workers, return_as="generator", batch_size=1, pre_dispatch="2*n_jobs")
             yield from pool(delayed(simulate_again)(self._text, design[None]) for design in asked)

@@ -3,7 +3,7 @@
 from divideropt.problem.aggregate import AGGREGATES, Aggregate
 from divideropt.problem.criteria import Constraint, Objective
 from divideropt.problem.problem import Evaluations, Problem, Told, merit
-from divideropt.problem.simulation import simulate
+from divideropt.problem.simulation import one_thread, simulate
 from divideropt.problem.space import DesignSpace, Variable
 
 __all__ = [
@@ -17,5 +17,6 @@ __all__ = [
     "Told",
     "Variable",
     "merit",
+    "one_thread",
     "simulate",
 ]

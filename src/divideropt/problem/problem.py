@@ -6,12 +6,13 @@ log answers exactly as the simulation did, and no penalty is ever logged.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray, Model, Verdict
-from divideropt.problem.criteria import Constraint, Objective
+from divideropt.problem.criteria import Bounds, Constraint, Objective, Values
 from divideropt.problem.simulation import simulate
 from divideropt.problem.space import DesignSpace
 
@@ -47,6 +48,19 @@ class Evaluations:
     def __len__(self) -> int:
         """Number of designs."""
         return len(self.designs)
+
+    def part(self, begin: int, end: int) -> "Evaluations":
+        """Return some of the designs, sharing their numbers with the whole."""
+        return Evaluations(self.designs[begin:end], self.quantities[begin:end], self.verdicts[begin:end])
+
+    @classmethod
+    def together(cls, batches: "Sequence[Evaluations]") -> "Evaluations":
+        """Return several batches as one, at least one."""
+        return cls(
+            np.concatenate([batch.designs for batch in batches]),
+            np.concatenate([batch.quantities for batch in batches]),
+            [verdict for batch in batches for verdict in batch.verdicts],
+        )
 
 
 @dataclass(frozen=True)
@@ -93,7 +107,7 @@ class Problem:
     @property
     def constraint_count(self) -> int:
         """Number of columns of `Told.G`."""
-        return 1 + sum((c.minimum is not None) + (c.maximum is not None) for c in self.constraints)
+        return 1 + len(self._bounds)
 
     def simulate(self, designs: FloatArray) -> Evaluations:
         """Run the model.
@@ -109,16 +123,28 @@ class Problem:
 
     def tell(self, evaluations: Evaluations) -> Told:
         """Word a batch for an optimiser: penalties for failures, violations for constraints."""
-        ok = np.array([v.ok for v in evaluations.verdicts], dtype=bool)
-        column = {name: evaluations.quantities[:, i] for i, name in enumerate(self.model.quantities)}
-        F = np.column_stack([o.value(column[o.quantity.name]) for o in self.objectives])
-        ok &= np.isfinite(F).all(axis=1)
-        F = np.where(ok[:, None], F, [FAILED_OBJECTIVE * o.quantity.scale for o in self.objectives])
-        failure = np.where(ok, 0.0, FAILURE_VIOLATION)[:, None]
-        G = np.column_stack([failure, *(c.violations(column[c.quantity.name]) for c in self.constraints)])
-        G = np.where(np.isnan(G), LARGEST_VIOLATION, G)
-        G[:, 1:] = np.clip(G[:, 1:], -LARGEST_VIOLATION, LARGEST_VIOLATION)
+        F = self._values.of(evaluations.quantities)
+        ok = np.array([v.ok for v in evaluations.verdicts], dtype=bool) & np.isfinite(F).all(axis=1)
+        F = np.where(ok[:, None], F, self._failed)
+        violations = self._bounds.violations(evaluations.quantities)
+        violations[np.isnan(violations)] = LARGEST_VIOLATION
+        G = np.empty((len(F), self.constraint_count))
+        G[:, 0] = np.where(ok, 0.0, FAILURE_VIOLATION)
+        np.clip(violations, -LARGEST_VIOLATION, LARGEST_VIOLATION, out=G[:, 1:])
         return Told(F, G)
+
+    @cached_property
+    def _values(self) -> Values:
+        return Values(list(self.model.quantities), [o.quantity for o in self.objectives])
+
+    @cached_property
+    def _failed(self) -> FloatArray:
+        """What is told of the objectives of a failed design, shape (k,)."""
+        return np.array([FAILED_OBJECTIVE * o.quantity.scale for o in self.objectives])
+
+    @cached_property
+    def _bounds(self) -> Bounds:
+        return Bounds(list(self.model.quantities), self.constraints)
 
 
 def merit(value: FloatArray, told: Told) -> FloatArray:

@@ -1,6 +1,7 @@
 """Designs in, results out, whatever the model does: the one place that calls `Model.evaluate`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 
 import numpy as np
@@ -25,11 +26,33 @@ def simulate(
         `crashed`, its quantities NaN; the others are not touched by it. The linear algebra runs on one thread: with
         another number of them its last bits would be others, and a run could not be repeated with other workers.
     """
-    places = {name: i for i, name in enumerate(model.parameters)}
-    full = np.tile([fixed[name] for name in model.parameters], (len(designs), 1))
-    full[:, [places[name] for name in names]] = designs
-    with _linear_algebra().limit(limits=1, user_api="blas"):
+    parameters = list(model.parameters)
+    full = np.empty((len(designs), len(parameters)))
+    full[:] = [fixed[name] for name in parameters]
+    full[:, [parameters.index(name) for name in names]] = designs
+    with one_thread():
         return _guarded(model, full)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Run the linear algebra on one thread until this is left; inside another of these, do nothing.
+
+    To set the number of threads takes longer than to simulate a design, so whoever simulates many enters once.
+    """
+    if _entered:
+        yield
+        return
+    with _linear_algebra().limit(limits=1, user_api="blas"):
+        _entered.append(True)
+        try:
+            yield
+        finally:
+            _entered.clear()
+
+
+_entered: list[bool] = []
+"""Holds something while the linear algebra runs on one thread."""
 
 
 @cache

@@ -1,6 +1,7 @@
 """The design space: which parameters vary, and between what bounds."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,25 +37,31 @@ class DesignSpace:
         """Number of variables."""
         return len(self.variables)
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the variables."""
         return tuple(v.parameter.name for v in self.variables)
 
-    @property
+    @cached_property
     def lower(self) -> FloatArray:
         """Lower bounds, shape (d,)."""
-        return np.array([v.lower for v in self.variables])
+        return _constant([v.lower for v in self.variables])
 
-    @property
+    @cached_property
     def upper(self) -> FloatArray:
         """Upper bounds, shape (d,)."""
-        return np.array([v.upper for v in self.variables])
+        return _constant([v.upper for v in self.variables])
 
     def clip(self, designs: FloatArray) -> FloatArray:
         """Move designs, shape (…, d), to the nearest point of the box."""
-        return np.clip(designs, self.lower, self.upper)
+        return designs.clip(self.lower, self.upper)
 
     def sample(self, count: int, random: np.random.Generator) -> FloatArray:
         """Draw designs uniformly, shape (count, d)."""
         return self.lower + (self.upper - self.lower) * random.random((count, len(self)))
+
+
+def _constant(values: list[float]) -> FloatArray:
+    array = np.array(values)
+    array.setflags(write=False)
+    return array

@@ -8,7 +8,8 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 import pyarrow as pa
 
-from divideropt.analysis import Verified, combined_front, marked, run_front
+from divideropt.analysis import Summary, Verified, combined_front, marked, summarise
+from divideropt.analysis.summary import Best
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.models.base import FloatArray
@@ -114,11 +115,12 @@ class ReportData:
         return sum(design.valid is False for design in self.front)
 
 
-def read_report(store: Store) -> ReportData:
+def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> ReportData:
     """Read a store, finished or not.
 
     Args:
         store: The store.
+        logs: Each run's log, summed up, where the caller knows; read if not given.
 
     Returns:
         What its report says.
@@ -132,10 +134,11 @@ def read_report(store: Store) -> ReportData:
     campaign = stored_campaign(store)
     problem, runs = build_problem(campaign), plan_runs(campaign)
     schema = TableSchema.of(problem)
-    logs = {run.name: store.log(run.name, schema).table() for run in runs}
+    if logs is None:
+        logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
-    facts = tuple(read_run(run, logs[run.name], problem, schema, reference) for run in runs)
+    facts = tuple(read_run(run, logs[run.name], reference) for run in runs)
     table, notes = _front(store, logs, problem, schema)
     known = store.verification(schema).table()
     table = marked(table, known, problem, schema, campaign.verification.share)
@@ -161,14 +164,14 @@ def read_report(store: Store) -> ReportData:
 
 
 def _front(
-    store: Store, logs: Mapping[str, pa.Table], problem: Problem, schema: TableSchema
+    store: Store, logs: Mapping[str, Summary], problem: Problem, schema: TableSchema
 ) -> tuple[pa.Table, tuple[str, ...]]:
     """The combined front of what is logged, and what to say of the stored one if that is another.
 
     The stored one is written when a campaign ends. While an extended one runs, it is older than the logs, and
     would contradict every count beside it.
     """
-    table = combined_front([run_front(logs[name], problem, schema) for name in sorted(logs)], problem, schema)
+    table = combined_front([logs[name].front for name in sorted(logs)], problem, schema)
     stored = store.read_front("combined", schema)
     if stored is None:
         return table, ("The campaign has not ended: the front below is that of the evaluations logged so far.",)
@@ -190,13 +193,14 @@ def _progress(runs: Sequence[RunFacts]) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _best(facts: Sequence[RunFacts], logs: Mapping[str, pa.Table], read: Reader) -> tuple[Design, ...]:
+def _best(facts: Sequence[RunFacts], logs: Mapping[str, Summary], read: Reader) -> tuple[Design, ...]:
     """The best of each strategy by goal attainment, in the campaign's order; of its first run that has it."""
-    found: dict[str, tuple[float, RunFacts, int]] = {}
+    found: dict[str, Best] = {}
     for run in facts:
-        if run.best is not None and (run.strategy not in found or run.best[1] < found[run.strategy][0]):
-            found[run.strategy] = (run.best[1], run, run.best[0])
-    return tuple(read(logs[run.name].slice(row, 1))[0] for _, run, row in found.values())
+        best = logs[run.name].best
+        if best is not None and (run.strategy not in found or best.value < found[run.strategy].value):
+            found[run.strategy] = best
+    return tuple(read(best.design)[0] for best in found.values())
 
 
 def _drawn(front: Sequence[Design]) -> tuple[int, ...]:

@@ -57,8 +57,8 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
 
 def drawn(name: str, figure: Any, **more: Any) -> dict[str, Any]:
     """Word a figure for report.js; `name` is the id of its element."""
-    parts = figure.to_plotly_json()
-    return {"id": name, "data": parts["data"], "layout": parts["layout"], **more}
+    traces = [trace.to_plotly_json() for trace in figure.data]
+    return {"id": name, "data": traces, "layout": figure.layout.to_plotly_json(), **more}
 
 
 def save(out: Path, text: str) -> Path:

@@ -5,8 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
+from numpy.typing import NDArray
 
+from divideropt.models.base import FloatArray
 from divideropt.report.data import ObjectiveFacts, ReportData, VariableFacts
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
@@ -33,7 +36,7 @@ def front_3d(data: ReportData) -> go.Figure:
             name=name,
             mode="markers",
             marker={"color": mark.colour, "symbol": mark.shape, "size": 4, "opacity": mark.opacity},
-            customdata=[d.design_id for d in designs],
+            customdata=_ids(designs),
             hovertemplate=_hover(dict(zip("xyz", first, strict=True))),
         )
     figure.add_scatter3d(**_ring(12), x=[], y=[], z=[])
@@ -60,7 +63,7 @@ def parallel_coordinates(data: ReportData) -> go.Figure:
     dimensions = [
         {
             "label": label(facts, line_break=True),
-            "values": [rounded(facts.axis.scaled(d.variables[i])) for d in designs],
+            "values": np.array([rounded(facts.axis.scaled(d.variables[i])) for d in designs]),
             "range": [facts.axis.scaled(facts.lower), facts.axis.scaled(facts.upper)],
         }
         for i, facts in enumerate(data.variables)
@@ -68,7 +71,7 @@ def parallel_coordinates(data: ReportData) -> go.Figure:
     dimensions += [
         {
             "label": label(facts, line_break=True),
-            "values": [rounded(facts.axis.scaled(d.objectives[i])) for d in designs],
+            "values": np.array([rounded(facts.axis.scaled(d.objectives[i])) for d in designs]),
         }
         for i, facts in enumerate(data.objectives)
     ]
@@ -77,7 +80,7 @@ def parallel_coordinates(data: ReportData) -> go.Figure:
     figure.add_parcoords(
         dimensions=dimensions,
         line={
-            "color": [order.index(d.strategy) for d in designs],
+            "color": np.array([order.index(d.strategy) for d in designs]),
             "colorscale": _steps([mark.colour for mark in marks(order).values()]),
             "cmin": 0,
             "cmax": max(1, len(order) - 1),
@@ -140,7 +143,7 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
             name=name,
             mode="markers",
             marker={"color": mark.colour, "symbol": mark.shape, "size": 6, "opacity": mark.opacity},
-            customdata=[d.design_id for d in designs],
+            customdata=_ids(designs),
             hovertemplate=_hover({"x": first, "y": second}),
         )
     figure.add_scatter(**_ring(13), x=[], y=[])
@@ -192,11 +195,16 @@ def _by_strategy(data: ReportData) -> Iterator[tuple[str, Mark, list[Design]]]:
             yield plain(name), mark, designs
 
 
-def _columns(designs: Sequence[Design], objectives: Sequence[ObjectiveFacts]) -> list[list[float]]:
-    """Values of some objectives, as shown."""
+def _columns(designs: Sequence[Design], objectives: Sequence[ObjectiveFacts]) -> list[FloatArray]:
+    """Values of some objectives, as shown; in arrays, which plotly takes as they are: it looks through lists."""
     return [
-        [rounded(facts.axis.scaled(design.objectives[facts.index])) for design in designs] for facts in objectives
+        np.array([rounded(facts.axis.scaled(design.objectives[facts.index])) for design in designs])
+        for facts in objectives
     ]
+
+
+def _ids(designs: Sequence[Design]) -> NDArray[np.object_]:
+    return np.array([design.design_id for design in designs], dtype=object)
 
 
 def _hover(axes: Mapping[str, ObjectiveFacts]) -> str:

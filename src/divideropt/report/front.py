@@ -23,7 +23,7 @@ VALIDITY = "within_validity"
 """The quantity by which a model says whether its assumptions hold."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Design:
     """One design.
 

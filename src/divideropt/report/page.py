@@ -1,8 +1,10 @@
 """The report's page: frozen data to one HTML file."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from divideropt.analysis import Summary
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.display import number, rounded
 from divideropt.report.document import drawn, render, save
@@ -24,12 +26,13 @@ MOST_DEVIATING = 40
 """Deviating designs that the page lists above the table, where each is marked."""
 
 
-def write_report(store: Store, out: Path | None = None) -> Path:
+def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summary] | None = None) -> Path:
     """Write the report of a store, finished or not.
 
     Args:
         store: The store.
         out: Where to; `report.html` in the store if not given.
+        logs: Each run's log, summed up, where the caller knows; read if not given.
 
     Returns:
         Where it is.
@@ -40,7 +43,7 @@ def write_report(store: Store, out: Path | None = None) -> Path:
         StoreError: The store is damaged or of a later version.
         DiskError: The disk refused.
     """
-    text = render_report(read_report(store))
+    text = render_report(read_report(store, logs))
     return store.write_report(text) if out is None else save(out, text)
 
 

@@ -1,18 +1,15 @@
 """What each run did: its budget, how its simulations ended, how its hypervolume grew."""
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import pyarrow as pa
 
-from divideropt.analysis import best_attainment, hypervolume_history
+from divideropt.analysis import Summary, hypervolume_history
 from divideropt.campaign.plan import Run
 from divideropt.models import Outcome
 from divideropt.models.base import FloatArray
-from divideropt.problem import Problem, Told
-from divideropt.store import TableSchema
+from divideropt.problem import Told
 
 MARKS = 60
 """Points of a run's history: half of them early, where most is gained."""
@@ -67,38 +64,30 @@ class RunFacts:
         return self.hypervolumes[-1] if self.hypervolumes else None
 
 
-def read_run(
-    run: Run, log: pa.Table, problem: Problem, schema: TableSchema, reference: FloatArray | None
-) -> RunFacts:
-    """Sum up a run.
+def read_run(run: Run, log: Summary, reference: FloatArray | None) -> RunFacts:
+    """Say what a run did.
 
     Args:
         run: As planned.
         log: Its evaluations so far.
-        problem: What is optimised.
-        schema: The log's columns.
         reference: The reference point, shape (k,), or None.
     """
-    told = problem.tell(schema.evaluations(log))
-    outcomes, texts = log["outcome"].to_pylist(), log["outcome_text"].to_pylist()
-    examples: dict[str, str] = {}
-    for outcome, text in zip(outcomes, texts, strict=True):
-        examples.setdefault(outcome, text)
-    marks = _marks(len(outcomes), len(problem.objectives))
+    told = log.told
+    marks = _marks(log.evaluations, told.F.shape[1])
     volumes = () if reference is None else tuple(hypervolume_history(told, reference, marks))
     return RunFacts(
         run.name,
         run.strategy,
         run.seed,
-        len(outcomes),
+        log.evaluations,
         run.options.budget,
         int(told.feasible.sum()),
-        dict(sorted(Counter(outcomes).items(), key=lambda item: list(Outcome).index(Outcome(item[0])))),
-        examples,
+        dict(sorted(log.outcomes.items(), key=lambda item: list(Outcome).index(Outcome(item[0])))),
+        log.examples,
         marks,
         volumes,
         _least(told, marks),
-        best_attainment(told, problem),
+        None if log.best is None else (log.best.row, log.best.value),
     )
 
 

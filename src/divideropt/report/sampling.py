@@ -50,7 +50,7 @@ def spread(points: FloatArray, first: Sequence[int], count: int) -> list[int]:
     if len(points) <= count:
         return chosen + [i for i in range(len(points)) if i not in set(chosen)]
     width = np.ptp(points, axis=0)
-    places = (points - points.min(axis=0)) / np.where(width > 0.0, width, 1.0)
+    places = np.ascontiguousarray(((points - points.min(axis=0)) / np.where(width > 0.0, width, 1.0)).T)
     if not chosen:
         chosen = [0]
     gap = np.full(len(points), np.inf)
@@ -78,5 +78,6 @@ def _worst(times: FloatArray, values: FloatArray, begin: int, end: int) -> tuple
     return -float(deviation[worst]), begin, begin + 1 + worst, end
 
 
-def _distances(places: FloatArray, row: int) -> FloatArray:
-    return np.asarray(((places - places[row]) ** 2).sum(axis=1))
+def _distances(places: FloatArray, column: int) -> FloatArray:
+    """Squared distances of points, shape (k, n), from one of them."""
+    return np.asarray(sum((coordinate - coordinate[column]) ** 2 for coordinate in places))

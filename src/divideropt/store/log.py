@@ -1,10 +1,11 @@
 """The evaluation log of one run: every evaluation in the order it was asked for, append-only."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from divideropt.errors import StoreError
 from divideropt.problem import Evaluations
@@ -22,6 +23,8 @@ class RunLog:
         self._folder, self._run, self._schema = folder, run, schema
         self._parts = Parts(folder, schema.arrow, _REMEDY)
         self._batches = 0
+        self._pending: list[Evaluations] = []
+        self._waiting = 0
 
     def replay(self) -> Iterator[Evaluations]:
         """Yield the logged batches in order, and make ready to append after the last.
@@ -32,12 +35,13 @@ class RunLog:
         self._batches = 0
         for table in self._parts.read():
             batches = table["batch"].to_numpy()
-            for batch in range(self._batches, int(batches[-1]) + 1):
-                rows = table.filter(pc.equal(table["batch"], batch))
-                if rows.num_rows == 0:
-                    raise StoreError(f"{self._folder}: batch {batch} is missing; {_REMEDY}")
+            starts = np.flatnonzero(np.diff(batches, prepend=batches[0] - 1))
+            whole = self._schema.evaluations(table)
+            for begin, end in pairwise([*starts.tolist(), len(batches)]):
+                if batches[begin] != self._batches:
+                    raise StoreError(f"{self._folder}: batch {self._batches} is missing; {_REMEDY}")
                 self._batches += 1
-                yield self._schema.evaluations(rows)
+                yield whole.part(begin, end)
 
     def append(self, evaluations: Evaluations) -> None:
         """Log a batch; it reaches the disk with the next flush.
@@ -45,8 +49,11 @@ class RunLog:
         Raises:
             DiskError: The disk refused a flush.
         """
-        self._parts.append(self._schema.log_rows(self._run, self._parts.rows, self._batches, evaluations))
-        self._batches += 1
+        designs, quantities = evaluations.designs.copy(), evaluations.quantities.copy()  # their owners may reuse them
+        self._pending.append(Evaluations(designs, quantities, evaluations.verdicts))
+        self._waiting += len(evaluations)
+        if self._parts.due(self._waiting):
+            self.flush()
 
     def flush(self) -> None:
         """Publish what is pending as one part.
@@ -54,7 +61,20 @@ class RunLog:
         Raises:
             DiskError: The disk refused; the log is as it was.
         """
+        if self._pending:
+            rows = self._schema.log_rows(self._run, self._parts.rows, self._batches, self._pending)
+            self._batches += len(self._pending)
+            self._pending, self._waiting = [], 0
+            self._parts.append(rows)
         self._parts.flush()
+
+    def read(self) -> Iterator[pa.Table]:
+        """Yield the parts in order: what to use where a log may be long.
+
+        Raises:
+            StoreError: A part is damaged, missing or not this run's.
+        """
+        return self._parts.read()
 
     def table(self) -> pa.Table:
         """Read every part as one table.

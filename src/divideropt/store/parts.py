@@ -76,11 +76,15 @@ class Parts:
         """
         self._pending.append(table)
         self._rows += table.num_rows
-        waiting = self._rows - self._flushed
+        if self.due():
+            self.flush()
+
+    def due(self, more: int = 0) -> bool:
+        """Whether what is pending, and so many more rows that the caller keeps, should reach the disk now."""
+        waiting = self._rows - self._flushed + more
         now = time.monotonic()
         patience = min(max(FLUSH_SECONDS, FLUSH_SHARE * (now - self._opened)), LONGEST_WAIT)
-        if waiting >= max(FLUSH_ROWS, FLUSH_SHARE * self._flushed) or now - self._last_flush >= patience:
-            self.flush()
+        return waiting >= max(FLUSH_ROWS, FLUSH_SHARE * self._flushed) or now - self._last_flush >= patience
 
     def flush(self) -> None:
         """Publish what is pending as one part.

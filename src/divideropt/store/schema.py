@@ -103,11 +103,13 @@ class TableSchema:
         fields += [_number(deviation_of(name), "", "", DEVIATION, Role.VERIFICATION) for name in self.objectives]
         return pa.schema([*self.results, *fields], metadata=self.arrow.metadata)
 
-    def log_rows(self, run: str, first: int, batch: int, evaluations: Evaluations) -> pa.Table:
-        """Word a batch as rows of the log; NaN becomes null."""
+    def log_rows(self, run: str, first: int, batch: int, batches: Sequence[Evaluations]) -> pa.Table:
+        """Word batches, counted from `batch`, as rows of the log, counted from `first`; NaN becomes null."""
+        evaluations = Evaluations.together(batches)
         n = len(evaluations)
-        ids = [f"{run}/{first + i}" for i in range(n)]
-        return self._rows(self.arrow, evaluations, design_id=ids, run=[run] * n, batch=np.full(n, batch))
+        ids = [f"{run}/{i}" for i in range(first, first + n)]
+        numbers = np.repeat(np.arange(batch, batch + len(batches)), [len(b) for b in batches])
+        return self._rows(self.arrow, evaluations, design_id=ids, run=[run] * n, batch=numbers)
 
     def result_rows(self, ids: Sequence[str], runs: Sequence[str], evaluations: Evaluations) -> pa.Table:
         """Word evaluations of named designs as rows of `results`; NaN becomes null."""
@@ -125,9 +127,7 @@ class TableSchema:
 
     def evaluations(self, table: pa.Table) -> Evaluations:
         """Read rows back, bit for bit; null becomes NaN."""
-        words = zip(table["outcome"].to_pylist(), table["outcome_text"].to_pylist(), strict=True)
-        verdicts = [_verdict(outcome, text) for outcome, text in words]
-        return Evaluations(_matrix(table, self.variables), _matrix(table, self.quantities), verdicts)
+        return Evaluations(_matrix(table, self.variables), _matrix(table, self.quantities), _verdicts(table))
 
 
 def check_version(schema: pa.Schema, path: object) -> None:
@@ -191,10 +191,19 @@ def _given_type(field: pa.Field) -> pa.DataType:
     return pa.float64() if pa.types.is_boolean(field.type) else field.type
 
 
-def _verdict(outcome: str, text: str) -> Verdict:
-    if outcome not in set(Outcome):
-        raise StoreError(f"the log has an outcome {outcome!r}, which this program does not know; restore it")
-    return Verdict(Outcome(outcome), text)
+def _verdicts(table: pa.Table) -> list[Verdict]:
+    """Read the verdicts, equal ones as one object: there are few."""
+    outcomes, texts = (table[name].combine_chunks().dictionary_encode() for name in ("outcome", "outcome_text"))
+    for outcome in outcomes.dictionary.to_pylist():
+        if outcome not in set(Outcome):
+            raise StoreError(f"the log has an outcome {outcome!r}, which this program does not know; restore it")
+    words = len(texts.dictionary)
+    codes, places = np.unique(
+        outcomes.indices.to_numpy().astype(np.int64) * words + texts.indices.to_numpy(), return_inverse=True
+    )
+    distinct = (divmod(code, words) for code in codes.tolist())
+    found = [Verdict(Outcome(outcomes.dictionary[i].as_py()), texts.dictionary[j].as_py()) for i, j in distinct]
+    return [found[place] for place in places.tolist()]
 
 
 def _columns(names: tuple[str, ...], matrix: FloatArray) -> dict[str, FloatArray]:
@@ -202,7 +211,7 @@ def _columns(names: tuple[str, ...], matrix: FloatArray) -> dict[str, FloatArray
 
 
 def _matrix(table: pa.Table, names: tuple[str, ...]) -> FloatArray:
-    if not names:
-        return np.empty((table.num_rows, 0))
-    columns = [table[name].cast(pa.float64()).to_numpy(zero_copy_only=False) for name in names]
-    return np.column_stack([np.asarray(c, dtype=np.float64) for c in columns])
+    matrix = np.empty((table.num_rows, len(names)))
+    for i, name in enumerate(names):
+        matrix[:, i] = table[name].cast(pa.float64()).to_numpy()
+    return matrix

@@ -100,12 +100,12 @@ class Complex:
     @property
     def best(self) -> int:
         """Index of the best point."""
-        return int(np.argmin(self.merits))
+        return int(self.merits.argmin())
 
     @property
     def worst(self) -> int:
         """Index of the worst point."""
-        return int(np.argmax(self.merits))
+        return int(self.merits.argmax())
 
 
 def search(held: Complex, score: Score, space: DesignSpace, random: np.random.Generator) -> None:
@@ -118,9 +118,9 @@ def search(held: Complex, score: Score, space: DesignSpace, random: np.random.Ge
         random: Draws the random part of the retreats.
     """
     width = space.upper - space.lower
-    while np.any(np.ptp(held.points, axis=0) > COLLAPSED * width):
+    while (held.points.max(axis=0) - held.points.min(axis=0) > COLLAPSED * width).any():
         worst, best = held.worst, held.best
-        others = np.delete(held.points, worst, axis=0)
+        others = np.concatenate([held.points[:worst], held.points[worst + 1 :]])
         for trial in _trials(held.points[worst], held.points[best], others.mean(axis=0), space, random):
             value = float(score(trial[None])[0])
             if value < held.merits[worst]:
