@@ -7,7 +7,7 @@ import numpy as np
 
 from divideropt.models.base import Outcome
 from divideropt.models.divider import FORMULATIONS, QUANTITIES, Scenario, parameter_set
-from divideropt.models.divider.metrics import SETTLING_BAND
+from divideropt.models.divider.metric_kernels import SETTLING_BAND
 from modelpages.limits import sample, simulate
 from modelpages.options import PARAMETERS
 from modelpages.runs import Run, run

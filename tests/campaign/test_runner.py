@@ -9,6 +9,7 @@ import pytest
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError, StoreError, UsageError
+from divideropt.models.divider import Divider
 from divideropt.store import RunLog
 
 TEXT = """
@@ -105,6 +106,32 @@ def test_splitting_batches_does_not_change_a_bit(tmp_path):
     run(tmp_path / "split", text, workers=2, backend="loky")
     run(tmp_path / "alone", text)
     assert_same(tmp_path / "split", tmp_path / "alone")
+
+
+DIVIDER = """
+name: one
+model: {kind: divider}
+variables: {spool_radius: [6 mm, 16 mm], groove_width: [0.6 mm, 2 mm], total_pressure_drop: [2 MPa, 10 MPa]}
+objectives:
+  steady_state_error: {goal: 0.5 %}
+  dynamic_error: {goal: 0.5 mL}
+  source_pressure: {goal: 18 MPa}
+constraints: {source_pressure: {max: 30 MPa}}
+strategies: {nsga2: {population: 24, generations: 3, seeds: [1]}}
+verification: {sample: 0}
+parallel: {workers: 2, backend: BACKEND}
+"""
+
+
+def test_threads_share_the_batches_of_a_run_that_is_alone(tmp_path, monkeypatch):
+    run(tmp_path / "alone", DIVIDER)
+    used = []
+    on_threads = Divider.on_threads
+    monkeypatch.setattr(Divider, "on_threads", lambda self, n: used.append(n) or on_threads(self, n))
+    monkeypatch.setattr("divideropt.campaign.runner.simulate_share", None)  # no other process is asked
+    run(tmp_path / "shared", DIVIDER, workers=2, backend="loky")
+    assert used == [2]
+    assert_same(tmp_path / "shared", tmp_path / "alone")
 
 
 def test_larger_budgets_seeds_and_strategies_extend_a_store(whole, tmp_path):

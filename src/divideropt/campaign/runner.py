@@ -121,7 +121,7 @@ class Runner:
             return [self._work_here(run, problem, problem.simulate) for run in runs]
         with parallel_config(backend="loky", inner_max_num_threads=1):
             if len(runs) < self._workers:
-                return self._split_batches(runs, problem)
+                return self._share_batches(runs, problem)
             return self._one_process_a_run(runs)
 
     def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
@@ -131,8 +131,11 @@ class Runner:
         pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
         return list(pool(tasks))
 
-    def _split_batches(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
-        """Do the runs one after the other, each batch shared out among the workers."""
+    def _share_batches(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
+        """Do the runs one after the other, each batch shared by threads, or by processes if threads gain nothing."""
+        threaded = problem.on_threads(self._workers)
+        if threaded is not None:
+            return [self._work_here(run, threaded, threaded.simulate) for run in runs]
         with Parallel(n_jobs=self._workers) as pool:
 
             def simulate(designs: FloatArray) -> Evaluations:

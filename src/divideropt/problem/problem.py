@@ -5,13 +5,13 @@ log answers exactly as the simulation did, and no penalty is ever logged.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from divideropt.models.base import FloatArray, Model, Verdict
+from divideropt.models.base import FloatArray, Model, Threaded, Verdict
 from divideropt.problem.criteria import Bounds, Constraint, Objective, Values
 from divideropt.problem.simulation import simulate
 from divideropt.problem.space import DesignSpace
@@ -120,6 +120,11 @@ class Problem:
         """
         quantities, verdicts = simulate(self.model, self.fixed, self.space.names, designs)
         return Evaluations(designs, quantities, verdicts)
+
+    def on_threads(self, threads: int) -> "Problem | None":
+        """Return the same problem with a model whose batches so many threads share; None if it gains nothing."""
+        model = self.model.on_threads(threads) if isinstance(self.model, Threaded) else None
+        return None if model is None else replace(self, model=model)
 
     def tell(self, evaluations: Evaluations) -> Told:
         """Word a batch for an optimiser: penalties for failures, violations for constraints."""
