@@ -25,6 +25,7 @@ from divideropt.models.divider.response import Response
 from divideropt.models.divider.tolerances import DEFAULT_SCALES
 from divideropt.ode import SolverStatus, Trajectory
 from divideropt.ode.base import NODES
+from divideropt.ode.rosenbrock import Workspace
 
 SCALES = np.array(list(DEFAULT_SCALES.values()))
 """Of the states: everyone's absolute tolerance is rtol times these, as ours."""
@@ -57,15 +58,20 @@ class Case:
     times: FloatArray
 
     @classmethod
-    def of(cls, model: Divider, design: FloatArray) -> "Case":
-        """Simulate a design, a row in the order of `PARAMETERS`."""
+    def all_of(cls, model: Divider, designs: FloatArray) -> list["Case"]:
+        """Simulate designs, rows in the order of `PARAMETERS`."""
+        work = Workspace(N_STATES, model.settings.max_steps)
+        return [cls._of(model, design, work) for design in designs]
+
+    @classmethod
+    def _of(cls, model: Divider, design: FloatArray, work: Workspace) -> "Case":
         response = model.respond(dict(zip(PARAMETERS, design.tolist(), strict=True)))
         first, last = response.phases
         assert first.end is not None
         assert last.trajectory is not None
         span, edges = (last.span.begin, last.span.end), last.trajectory.edges
         inner = edges[:-1, None] + np.diff(edges)[:, None] * NODES[:-1]
-        ours = Integration(last.design, span, first.end, model.settings)
+        ours = Integration(last.design, span, first.end, model.settings, work)
         return cls(response, ours, last.design, first.end, edges, np.append(inner.ravel(), edges[-1]))
 
     def measured(self, states: FloatArray) -> FloatArray:

@@ -1,14 +1,16 @@
 """What an evaluation costs: ratios to named peers, measured in one run, at the accuracy each reaches.
 
-Run it with `python benchmarks/speed.py`. The reference alone takes four minutes: keep it with `--save FILE`, and give it
-with `--reference FILE` the next time; the rest takes two. The peers integrate the same compiled equations from the same
-settled start over the same second: `scipy.integrate.odeint` (LSODA, with the Jacobian), `solve_ivp(method="LSODA")`,
+Run it with `python benchmarks/speed.py`. The reference alone takes four minutes: keep it with `--save FILE`, and give
+it with `--reference FILE` the next time; the rest takes two. The peers integrate the same compiled equations from the
+same settled start over the same second: `scipy.integrate.odeint` (LSODA, with the Jacobian), `solve_ivp` with LSODA,
 the first in plain Python, and numbalsoda if it is installed. Whatever is compared is timed in turn, design by design.
 """
 
 import argparse
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -28,11 +30,14 @@ LADDER = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8)
 ODEINT, SOLVE_IVP = "scipy odeint (LSODA)", "scipy solve_ivp (LSODA)"
 PYTHON, NUMBALSODA = "scipy odeint (LSODA), plain Python", "numbalsoda (LSODA)"
 
-PYTHON_DESIGNS = 40
-"""Designs that plain Python integrates: it takes some milliseconds for one."""
+SOME = 40
+"""Designs that plain Python integrates, and whose steps are taken apart."""
 
-INNER, REPEATS = 5, 2
-"""Our integrations in one timing, and timings of everything, of which the least counts."""
+INNER = 5
+"""Our integrations in one timing, and the same designs in one batch."""
+
+REPEATS = 3
+"""Timings of a batch, of which the least counts."""
 
 BATCHES = ((100, 200), (1_000, 20), (10_000, 4))
 """Sizes of the batches that are shared, and rounds."""
@@ -95,16 +100,18 @@ def accuracy(ours: FloatArray) -> list[Figure]:
 
 def peers(model: Divider, designs: FloatArray, exact: FloatArray, ours: FloatArray) -> list[Figure]:
     """Print what each peer costs where it comes as near as we do."""
-    cases = [Case.of(model, design) for design in designs]
+    cases = Case.all_of(model, designs)
     states = np.median([len(case.times) for case in cases])
-    print("\nan integration alone, the same start and second; the peers give the states at the nodes of our steps, "
-          f"{states:.0f} in the median,\nwhich is what the metrics need; they are measured with our metrics, untimed")  # fmt: skip
+    print(
+        "\nan integration alone, from the same start over the same second; the peers give the states that the metrics"
+    )
+    print(f"need, {states:.0f} in the median, at the nodes of our steps; measuring them is untimed")
     ladder = Ladder(model, cases, exact, ours)
     numbalsoda = numbalsoda_peer()
     tolerance, ratio = ladder.climb(ODEINT, by_odeint)
     figures = [Figure(f"times as fast as {ODEINT}", ratio, 20.0)]
     ladder.climb(SOLVE_IVP, by_solve_ivp)
-    figures.append(Figure(f"times as fast as {PYTHON}", plain_python(cases[:PYTHON_DESIGNS], tolerance), 100.0))
+    figures.append(Figure(f"times as fast as {PYTHON}", plain_python(cases[:SOME], tolerance), 100.0))
     if numbalsoda is None:
         print(f"{NUMBALSODA}: not installed; pip install numbalsoda, which needs cmake, a C++ and a Fortran compiler")
     else:
@@ -156,11 +163,11 @@ class Ladder:
         quantities, theirs, own = [], [], []
         peer(self.cases[0], rtol)
         for case in self.cases:
-            quantities.append(case.measured(peer(case, rtol)))
-            costs = [(case.ours.cost(INNER), timed(lambda case=case: peer(case, rtol))) for _ in range(REPEATS)]
-            mine, its = np.min(costs, axis=0).tolist()
-            own.append(mine)
-            theirs.append(its)
+            own.append(case.ours.cost(INNER))
+            begin = time.perf_counter()
+            states = peer(case, rtol)
+            theirs.append(time.perf_counter() - begin)
+            quantities.append(case.measured(states))
         return deviations(objectives_of(self.model, np.array(quantities)), self.exact), theirs, own
 
     def as_near(self, off: FloatArray) -> bool:
@@ -173,33 +180,31 @@ class Ladder:
 def plain_python(cases: Sequence[Case], rtol: float) -> float:
     """Print what the equations' Python source costs in odeint; return the ratio of the median times."""
     with uncompiled():
-        costs = [(case.ours.cost(INNER), timed(lambda case=case: in_python(case, rtol))) for case in cases]
+        costs = [(case.ours.cost(INNER), timed(partial(in_python, case, rtol))) for case in cases]
     own, theirs = np.median(costs, axis=0).tolist()
     print(f"\n{PYTHON}: rtol {rtol:.0e}, the same steps and states as compiled; {len(cases)} designs:\n"
           f"  {1e6 * theirs:.0f} µs to {1e6 * own:.1f} µs   {theirs / own:.0f}")  # fmt: skip
-    return theirs / own
+    return float(theirs / own)
 
 
 def worst(box: Box) -> list[Figure]:
     """Print what a whole evaluation costs: the batch, and each design of the box in a batch of its own kind."""
     model, feasible = box.model, box.designs[box.feasible]
     batch = timed(lambda: model.evaluate(feasible), REPEATS) / len(feasible)
-    costs = np.array(
-        [timed(lambda row=row: model.evaluate(np.tile(row, (INNER, 1))), REPEATS) for row in box.designs]
-    )
-    costs /= INNER
-    median, largest = np.median(costs), costs.max()
+    alike = (np.tile(row, (INNER, 1)) for row in box.designs)
+    costs = np.array([timed(partial(model.evaluate, batch), REPEATS) for batch in alike]) / INNER
+    ratio = float(costs.max() / np.median(costs))
     print("\nwhole evaluations, with rests, margins, metrics and verdicts, on one thread:")
     print(f"  all feasible designs in one batch: {1e6 * batch:.1f} µs a design, {1 / batch:.0f} a second")
-    print(f"  feasible designs, {INNER} times the same in a batch: median {1e6 * np.median(costs[box.feasible]):.1f} µs, "
-          f"worst {1e6 * costs[box.feasible].max():.0f} µs")  # fmt: skip
-    print(f"  all {len(costs)} designs of the box: median {1e6 * median:.1f} µs, worst {1e6 * largest:.0f} µs")
-    return [Figure("worst design of the box, in medians", float(largest / median), 50.0, at_least=False)]
+    for what, part in (("feasible", costs[box.feasible]), ("all", costs)):
+        print(f"  {len(part)} {what} designs, {INNER} alike in a batch: median {1e6 * np.median(part):.1f} µs "
+              f"a design, worst {1e6 * part.max():.0f} µs")  # fmt: skip
+    return [Figure("worst design of the box, in medians", ratio, 50.0, at_least=False)]
 
 
 def kernels(model: Divider, designs: FloatArray) -> None:
     """Print what the pieces of a step cost, in the median over some designs, and what of a step they make."""
-    cases = [Case.of(model, design) for design in designs[:PYTHON_DESIGNS]]
+    cases = Case.all_of(model, designs[:SOME])
     pieces = [kernel_costs(case.design, case.start) for case in cases]
     cost = {name: float(np.median([piece[name] for piece in pieces])) for name in pieces[0]}
     step = float(np.median([case.ours.cost(INNER) / (len(case.edges) - 1) for case in cases]))
@@ -208,8 +213,8 @@ def kernels(model: Divider, designs: FloatArray) -> None:
     )
     print("\nthe pieces of a step, from compiled loops, medians:")
     print(*(f"  {name}: {1e9 * value:.0f} ns" for name, value in cost.items()), sep="\n")
-    print(f"  a step that is kept: {1e9 * step:.0f} ns, rejected ones among them; one Jacobian, {STAGES - 1} rates, one "
-          f"factorisation and {STAGES} solutions make {1e9 * made_of:.0f} ns")  # fmt: skip
+    print(f"  a step: {1e9 * step:.0f} ns, rejected ones shared out; one Jacobian, {STAGES - 1} rates, one "
+          f"factorisation and {STAGES} solutions: {1e9 * made_of:.0f} ns")  # fmt: skip
 
 
 def sharing(model: Divider, designs: FloatArray) -> list[Figure]:
@@ -217,8 +222,8 @@ def sharing(model: Divider, designs: FloatArray) -> list[Figure]:
     print("\nbatches on two threads, and in two processes as the most that this machine's cores give:")
     found = share(model, designs, BATCHES)
     for s in found:
-        print(f"  {s.count:6} designs: one thread {1e3 * s.one:.2f} ms; two threads {s.one / s.threads:.2f} times as fast, "
-              f"two processes {s.one / s.processes:.2f} times")  # fmt: skip
+        print(f"  {s.count:6} designs: one thread {1e3 * s.one:.2f} ms; two threads are {s.one / s.threads:.2f} "
+              f"times as fast, two processes {s.one / s.processes:.2f}")  # fmt: skip
     return [Figure(f"two threads to one, {s.count} designs", s.one / s.threads, 1.8) for s in found]
 
 
