@@ -40,10 +40,16 @@ class Integration:
     """The model's own integration of one design, from its start over its last phase."""
 
     def __init__(
-        self, design: Design, span: tuple[float, float], start: FloatArray, settings: SolverSettings, work: Workspace
+        self,
+        design: Design,
+        span: tuple[float, float],
+        start: FloatArray,
+        settings: SolverSettings,
+        work: Workspace,
+        loop: Callable[..., Any] | None = None,
     ) -> None:
-        """Prepare it in a workspace that designs share, as they do in a batch."""
-        self._work, self._start = work, start
+        """Prepare it in a workspace that designs share, as in a batch; `loop` is `integrate_often` or the like."""
+        self._work, self._start, self._loop = work, start, loop or integrate_often
         w = self._work
         self._arguments = (
             design, *span, settings.max_steps, w.s, w.k, w.state, w.u, w.U, settings.rtol, np.array(settings.atol),
@@ -52,12 +58,12 @@ class Integration:
 
     def trajectory(self) -> Trajectory:
         """Integrate once."""
-        return self._work.trajectory(_integrate_often(1, self._start, self._arguments), self._start)
+        return self._work.trajectory(self._loop(1, self._start, self._arguments), self._start)
 
     def cost(self, times: int) -> float:
         """Time one integration [s], the mean of so many after a first one: a batch has everything at hand, too."""
-        _integrate_often(1, self._start, self._arguments)
-        return timed(lambda: _integrate_often(times, self._start, self._arguments)) / times
+        self._loop(1, self._start, self._arguments)
+        return timed(lambda: self._loop(times, self._start, self._arguments)) / times
 
 
 def kernel_costs(design: Design, y: FloatArray) -> dict[str, float]:
@@ -76,7 +82,7 @@ def kernel_costs(design: Design, y: FloatArray) -> dict[str, float]:
 
 
 @compiled
-def _integrate_often(times, start, arguments):  # type: ignore[no-untyped-def]
+def integrate_often(times, start, arguments):  # type: ignore[no-untyped-def]
     design, first, last, limit, s, k, y, u, increments, rtol, atol, bound, edges, values = arguments
     ending = 0
     for _ in range(times):

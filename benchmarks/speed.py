@@ -34,7 +34,10 @@ SOME = 40
 """Designs that plain Python integrates, and whose steps are taken apart."""
 
 INNER = 5
-"""Our integrations in one timing, and the same designs in one batch."""
+"""Our integrations in one timing."""
+
+ALIKE = 20
+"""Times the same design in one batch."""
 
 REPEATS = 3
 """Timings of a batch, of which the least counts."""
@@ -191,13 +194,13 @@ def worst(box: Box) -> list[Figure]:
     """Print what a whole evaluation costs: the batch, and each design of the box in a batch of its own kind."""
     model, feasible = box.model, box.designs[box.feasible]
     batch = timed(lambda: model.evaluate(feasible), REPEATS) / len(feasible)
-    alike = (np.tile(row, (INNER, 1)) for row in box.designs)
-    costs = np.array([timed(partial(model.evaluate, batch), REPEATS) for batch in alike]) / INNER
+    alike = (np.tile(row, (ALIKE, 1)) for row in box.designs)
+    costs = np.array([timed(partial(model.evaluate, batch), REPEATS) for batch in alike]) / ALIKE
     ratio = float(costs.max() / np.median(costs))
     print("\nwhole evaluations, with rests, margins, metrics and verdicts, on one thread:")
     print(f"  all feasible designs in one batch: {1e6 * batch:.1f} µs a design, {1 / batch:.0f} a second")
-    for what, part in (("feasible", costs[box.feasible]), ("all", costs)):
-        print(f"  {len(part)} {what} designs, {INNER} alike in a batch: median {1e6 * np.median(part):.1f} µs "
+    for what, part in (("the feasible", costs[box.feasible]), ("all", costs)):
+        print(f"  {what} {len(part)} designs, {ALIKE} alike in a batch: median {1e6 * np.median(part):.1f} µs "
               f"a design, worst {1e6 * part.max():.0f} µs")  # fmt: skip
     return [Figure("worst design of the box, in medians", ratio, 50.0, at_least=False)]
 
