@@ -1,5 +1,6 @@
 """A word when compilation begins: it takes seconds, once for each version of the package, and looks like a hang."""
 
+from contextlib import suppress
 from typing import Any, TextIO
 
 from numba.core import event
@@ -23,7 +24,8 @@ class _Sayer(event.Listener):  # type: ignore[misc]
         """Hear that a compilation begins."""
         if not self._said:
             self._said = True
-            print(WORDS, file=self._words, flush=True)
+            with suppress(ValueError):  # a stream that has been closed since
+                print(WORDS, file=self._words, flush=True)
 
     def on_end(self, event: Any) -> None:
         """Hear that it ends."""

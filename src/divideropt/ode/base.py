@@ -6,7 +6,6 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 FloatArray = NDArray[np.float64]
 Rates = Callable[[float, FloatArray], FloatArray]
@@ -115,6 +114,7 @@ def crossing(event: Event, values: FloatArray) -> float:
     Returns:
         The place, in (0, 1].
     """
+    from scipy.optimize import brentq  # noqa: PLC0415 (late: only a rigid stop needs it)
 
     def at(theta: float) -> float:
         return event(values @ lagrange_weights(np.array([theta]))[0])

@@ -1,12 +1,9 @@
 """SciPy's stiff solvers behind the call of `divideropt.ode.base`."""
 
 import warnings
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from divideropt.ode.base import (
     NODES,
@@ -19,7 +16,10 @@ from divideropt.ode.base import (
     crossing,
 )
 
-SCIPY_METHODS: Mapping[str, Any] = MappingProxyType({"LSODA": LSODA, "BDF": BDF, "Radau": Radau})
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolver
+
+SCIPY_METHODS = ("LSODA", "BDF", "Radau")
 """The methods of `scipy.integrate.solve_ivp` for stiff systems, by its names."""
 
 
@@ -32,7 +32,9 @@ def integrate_by_scipy(
     event: Event | None = None,
 ) -> Trajectory:
     """Integrate by one of SciPy's methods; see `divideropt.ode.integrate`."""
-    solver = SCIPY_METHODS[settings.method](
+    from scipy import integrate  # noqa: PLC0415 (late: most commands never need it)
+
+    solver: Any = getattr(integrate, settings.method)(
         rates,
         span[0],
         start,
@@ -46,7 +48,7 @@ def integrate_by_scipy(
 
 
 def _advance(
-    solver: OdeSolver, span: tuple[float, float], start: FloatArray, max_steps: int, event: Event | None
+    solver: "OdeSolver", span: tuple[float, float], start: FloatArray, max_steps: int, event: Event | None
 ) -> Trajectory:
     """Step to the end, the event, or the end of the budget."""
     edges, values = [span[0]], []
@@ -74,7 +76,7 @@ def _advance(
     return Trajectory(np.array(edges), np.array(values), status, message)
 
 
-def _step(solver: OdeSolver) -> str | None:
+def _step(solver: "OdeSolver") -> str | None:
     """Take a step; return why there was none, in words, or None."""
     try:
         failure = solver.step()

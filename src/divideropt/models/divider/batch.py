@@ -1,7 +1,8 @@
 """A batch of designs through one scenario, in one compiled loop.
 
-It goes the straight way: rests by Newton, responses by the Rosenbrock method. A design that leaves it, because a rest
-is not found or a response not completed, is left to `respond`, which knows other ways.
+It goes the straight way: rests by Newton, if need be from where the valve goes when it is let go, and responses by
+the Rosenbrock method. A design that leaves it, because a rest is not found or a response not completed, is left to
+`respond`, which knows other ways.
 """
 
 import math
@@ -11,7 +12,7 @@ from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.metric_kernels import measure_course
 from divideropt.models.divider.rest_kernels import centred_state, polish
 from divideropt.models.divider.result_record import LIMIT_CYCLE, NOT_FOLLOWED
-from divideropt.models.divider.run_kernels import run
+from divideropt.models.divider.run_kernels import let_go, run
 from divideropt.models.divider.verdict_kernels import judge_course
 from divideropt.ode.compiled import compiled
 from divideropt.ode.rosenbrock import FINISHED, TAKEN
@@ -27,7 +28,7 @@ def simulate_batch(rows, options, course, blank, settings, work, found, low, hig
     Args:
         rows: `PARAMETER_ROW`, shape (n,).
         options: `OPTIONS`, shape (1,).
-        course: A `Course` with room for the steps of all phases; work.
+        course: A `Course` with room for the steps of all phases and `RELAXATION_STEPS` more; work.
         blank: `COEFFICIENTS`, shape (1,); work.
         settings: Relative tolerance; absolute tolerance a state, shape (9,), without Coulomb friction and with it;
             budget of steps a phase.
@@ -59,23 +60,33 @@ def _follow(options, course, blank, settings, work):  # type: ignore[no-untyped-
         apply_span(course.row, course.spans, phase, course.rules[0].sized_for, design)
         moving = course.spans[phase].moving != 0
         if phase == 0 and course.rules[0].settled != 0:
-            course.ends[0] = centred_state(design)
             course.first[0] = course.first[1] = 0
-            if not polish(design, course.ends[0]) < math.inf:
+            if not _find_rest(course, phase, design, centred_state(design), work):
                 return False
-            course.rests[0] = course.ends[0]
+            course.ends[0] = course.rests[0]
         else:
             if not _run_phase(course, phase, design, settings, work):
                 return False
-            if not moving:
-                course.rests[phase] = course.ends[phase]
-                if not polish(design, course.rests[phase]) < math.inf:
-                    return False
+            if not moving and not _find_rest(course, phase, design, course.ends[phase], work):
+                return False
         course.reached[phase], course.rested[phase] = 1, 0 if moving else 1
         course.banded[phase] = 0
         if friction > 0.0 and not moving and not _find_band(course, phase, design, friction):
             return False
     return True
+
+
+@compiled
+def _find_rest(course, phase, design, start, work):  # type: ignore[no-untyped-def]
+    """Find the rest near a state, or near where the valve goes from there; return whether there is one."""
+    s, k, _, u, increments = work
+    rest, spare = course.rests[phase], course.first[phase + 1]  # what lies behind the last edge is free
+    rest[:] = start
+    if polish(design, rest) < math.inf:
+        return True
+    rest[:] = start
+    let_go(design, rest, s, k, u, increments, course.edges[spare + 1 :], course.values[spare:])
+    return polish(design, rest) < math.inf
 
 
 @compiled

@@ -72,7 +72,7 @@ def empty_course(rules: Records, spans: Records, steps: int) -> Course:
         spans=spans,
         designs=blank(COEFFICIENTS, p),
         first=np.zeros(p + 1, dtype=np.int64),
-        edges=np.empty(steps + 1),
+        edges=np.empty(steps + 2),
         values=np.empty((steps, N_STATES, NODES_PER_STEP)),
         flows=np.empty((steps, 2, NODES_PER_STEP)),
         stopped=np.zeros(p, dtype=np.int64),

@@ -1,7 +1,7 @@
 """Equilibria of the valve: states at which every rate vanishes, and how stable they are.
 
-A damped Newton method on the analytic Jacobian does the work. Where it fails, SciPy's hybrid method is asked; where
-that fails, the valve is let go until it is nearly at rest, a pseudo-transient with the true masses and volumes; and
+A damped Newton method on the analytic Jacobian does the work. Where it fails, the valve is let go until it is nearly
+at rest, a pseudo-transient with the true masses and volumes; where that fails, SciPy's hybrid method is asked; and
 where that fails too, the equilibrium is bracketed: with the spool held at a position the pressures are the solution
 of a network of monotone resistances, and what remains is the root of one force over the stroke.
 `benchmarks/equilibria.py` counts how often each is needed.
@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq, root
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Stop
@@ -28,14 +27,8 @@ from divideropt.models.divider.rest_kernels import (
     residual_scales,
 )
 from divideropt.models.divider.rest_kernels import reach as farthest
-from divideropt.ode import SolverSettings, integrate
-
-RELAXATION_TIME = 2.0
-"""How long a valve is let go [s]: twenty times what it needs to settle."""
-
-RELAXATION_RTOL = 1e-4
-RELAXATION_STEPS = 1500
-"""Tolerance and budget of steps then; Newton does the rest."""
+from divideropt.models.divider.run_kernels import RELAXATION_STEPS, let_go
+from divideropt.ode.rosenbrock import Workspace
 
 BRACKETS = 64
 """Intervals of the stroke searched for a sign change of the force where Newton fails."""
@@ -50,7 +43,7 @@ class Equilibrium:
     Attributes:
         state: Shape (9,).
         residual: Largest scaled residual.
-        method: What led to it: `newton`, `hybrid`, `transient`, `bracket`, or `rigid stop`.
+        method: What led to it: `newton`, `transient`, `hybrid`, `bracket`, or `rigid stop`.
     """
 
     state: FloatArray
@@ -158,6 +151,8 @@ def _hybrid(design: Design, start: FloatArray) -> Equilibrium | None:
         y[FREE] = unknowns * STATE_SIZES[FREE]
         return np.asarray(jacobian(0.0, y, design)[np.ix_(BALANCES, FREE)] / scale[:, None] * STATE_SIZES[FREE])
 
+    from scipy.optimize import root  # noqa: PLC0415 (late: few designs need it)
+
     solution = root(residual, y[FREE] / STATE_SIZES[FREE], jac=slopes, method="hybr")
     if not np.isfinite(solution.x).all():
         return None
@@ -167,17 +162,9 @@ def _hybrid(design: Design, start: FloatArray) -> Equilibrium | None:
 
 def _let_go(design: Design, start: FloatArray) -> Equilibrium | None:
     """Let the valve move until it is nearly at rest, then go to the root by Newton."""
-    settings = SolverSettings("LSODA", RELAXATION_RTOL, (RELAXATION_RTOL * 1e3,) * N_STATES, RELAXATION_STEPS)
-    released = start.copy()
-    released[_XDOT] = 0.0
-    run = integrate(
-        lambda t, y: rates(t, y, design),
-        lambda t, y: jacobian(t, y, design),
-        (0.0, RELAXATION_TIME),
-        released,
-        settings,
-    )
-    return _polished(design, run.final)
+    y, work = start.copy(), Workspace(N_STATES, RELAXATION_STEPS)
+    let_go(design, y, work.s, work.k, work.u, work.U, work.edges, work.values)
+    return _polished(design, y)
 
 
 def _bracketed(design: Design, start: FloatArray) -> Equilibrium | None:
@@ -207,6 +194,8 @@ def _profile(
 
 def _root_between(design: Design, guess: FloatArray, left: float, right: float) -> FloatArray | None:
     """Find where the force on the held spool vanishes; None where the pressures cannot be solved on the way."""
+    from scipy.optimize import brentq  # noqa: PLC0415
+
     try:
         x = brentq(lambda x: _force_at(design, guess, x), left, right, xtol=1e-12)
     except ValueError:  # NaN, or a sign that is not there when asked again
@@ -252,8 +241,8 @@ def _field(design: Design, name: str) -> float:
 
 _SEARCHES: Mapping[str, Callable[[Design, FloatArray], Equilibrium | None]] = {
     "newton": _polished,
-    "hybrid": _hybrid,
     "transient": _let_go,
+    "hybrid": _hybrid,
     "bracket": _bracketed,
 }
 """How an equilibrium is sought, in this order."""

@@ -19,6 +19,7 @@ from divideropt.models.divider.quantities import quantities_of
 from divideropt.models.divider.record import COEFFICIENTS, Records, blank, parameter_rows
 from divideropt.models.divider.response import Response, respond
 from divideropt.models.divider.result_record import NOT_FOLLOWED, SOUND
+from divideropt.models.divider.run_kernels import RELAXATION_STEPS
 from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
 from divideropt.models.divider.verdicts import OK, verdict_of
@@ -104,9 +105,9 @@ class Divider:
     def _simulate(self, rows: Records, found: Findings, low: int, high: int) -> None:
         """Send a share of the designs through the compiled loop."""
         options, rules, spans, settings = self._compiled_form
-        work = Workspace(N_STATES, 0)
+        work, room = Workspace(N_STATES, 0), settings[-1] * len(spans) + RELAXATION_STEPS
         simulate_batch(
-            rows, options, empty_course(rules, spans, settings[-1] * len(spans)), blank(COEFFICIENTS), settings,
+            rows, options, empty_course(rules, spans, room), blank(COEFFICIENTS), settings,
             (work.s, work.k, work.state, work.u, work.U), (found.whole, found.by_event, found.judgements), low, high,
         )  # fmt: skip
 

@@ -19,7 +19,15 @@ from divideropt.ode.rosenbrock import (
     stage_time,
 )
 
-_POSITION = STATES.index("x")
+RELAXATION_TIME = 2.0
+"""How long a valve is let go [s]: twenty times what it needs to settle."""
+
+RELAXATION_RTOL = 1e-4
+RELAXATION_STEPS = 1500
+"""Tolerance and budget of steps then; Newton does the rest."""
+
+_VELOCITY, _POSITION = STATES.index("xdot"), STATES.index("x")
+_RELAXATION_ATOL = np.full(N_STATES, RELAXATION_RTOL * 1e3)
 
 
 @compiled
@@ -69,6 +77,27 @@ def run(design, first, last, limit, s, k, y, u, U, rtol, atol, bound, edges, val
         if after != NEXT:
             return after
         motion(s[TIME], y, d, f0, jac)
+
+
+@compiled
+def let_go(design, y, s, k, u, U, edges, values):  # type: ignore[no-untyped-def]
+    """Let a valve move from a state, at rest, until it has had time to settle.
+
+    Args:
+        design: `COEFFICIENTS`, shape (1,), under inputs that stay.
+        y: The state, shape (9,); receives the last.
+        s: As for `run`, with the others.
+        k: As for `run`.
+        u: As for `run`.
+        U: As for `run`.
+        edges: Work, shape (RELAXATION_STEPS + 1,).
+        values: Work, shape (RELAXATION_STEPS, 9, NODES_PER_STEP).
+    """
+    y[_VELOCITY] = 0.0
+    run(
+        design, 0.0, RELAXATION_TIME, RELAXATION_STEPS, s, k, y, u, U,
+        RELAXATION_RTOL, _RELAXATION_ATOL, np.inf, edges, values,
+    )  # fmt: skip
 
 
 @compiled
