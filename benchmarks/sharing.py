@@ -1,7 +1,7 @@
 """What two cores give: threads that share a batch, beside two processes that have nothing in common."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from multiprocessing import get_context
@@ -9,7 +9,6 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 import numpy as np
-from loops import timed
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import Divider
@@ -33,12 +32,16 @@ class Sharing:
         one: On one thread.
         threads: On two threads of one process.
         processes: In two processes, half the batch each.
+        one_works: Processor time on one thread; it counts where something else keeps the cores busy.
+        threads_work: The same of both threads.
     """
 
     count: int
     one: float
     threads: float
     processes: float
+    one_works: float
+    threads_work: float
 
 
 def share(model: Divider, designs: FloatArray, rounds: Sequence[tuple[int, int]]) -> list[Sharing]:
@@ -62,17 +65,25 @@ def share(model: Divider, designs: FloatArray, rounds: Sequence[tuple[int, int]]
         batch = _filled(designs, count)
         costs = [
             (
-                timed(partial(model.evaluate, batch)),
-                timed(partial(threaded.evaluate, batch)),
+                *_both_clocks(partial(model.evaluate, batch)),
+                *_both_clocks(partial(threaded.evaluate, batch)),
                 _together(outer, count // SHARES),
             )
             for _ in range(times)
         ]
-        found.append(Sharing(count, *np.min(costs, axis=0).tolist()))
+        one, one_works, threads, threads_work, processes = np.min(costs, axis=0).tolist()
+        found.append(Sharing(count, one, threads, processes, one_works, threads_work))
     for end, worker in zip(outer, workers, strict=True):
         end.send(None)
         worker.join()
     return found
+
+
+def _both_clocks(call: Callable[[], Any]) -> tuple[float, float]:
+    """Return how long a call takes, and the processor time of all threads [s]."""
+    begin, works = time.perf_counter(), time.process_time()
+    call()
+    return time.perf_counter() - begin, time.process_time() - works
 
 
 def _together(ends: Sequence["Connection[Any, Any]"], count: int) -> float:
