@@ -1,9 +1,10 @@
 """The divider as a model to optimise: parameters in, quantities and verdicts out."""
 
+import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 
 import numpy as np
 
@@ -32,7 +33,7 @@ REFERENCE_MAX_STEPS = 200_000
 """A hundred times what a design that settles needs at that tolerance."""
 
 SMALLEST_SHARE = 4
-"""Designs of a batch that are worth a thread: to start one takes as long as two of them."""
+"""Designs of a batch that are worth a thread's attention."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +99,9 @@ class Divider:
             self._simulate(rows, found, 0, len(rows))
             return found
         edges = [len(rows) * i // threads for i in range(threads + 1)]
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(partial(self._simulate, rows, found), edges[:-1], edges[1:]))
+        others = _pool(threads - 1).map(partial(self._simulate, rows, found), edges[1:-1], edges[2:])
+        self._simulate(rows, found, 0, edges[1])
+        list(others)
         return found
 
     def _simulate(self, rows: Records, found: Findings, low: int, high: int) -> None:
@@ -154,3 +156,12 @@ class Divider:
 
 def _by_name(design: FloatArray) -> dict[str, float]:
     return dict(zip(PARAMETERS, design.tolist(), strict=True))
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    """Return threads that help; they are kept, since to start them takes as long as some designs."""
+    return ThreadPoolExecutor(threads, thread_name_prefix="divider")
+
+
+os.register_at_fork(after_in_child=_pool.cache_clear)  # threads do not come along

@@ -13,8 +13,11 @@ from divideropt.ode.base import NODE_WEIGHTS, NODES, lagrange_weights
 from divideropt.ode.compiled import compiled
 from divideropt.ode.polynomial import coefficients, value_at
 
-BISECTIONS = 60
-"""Halvings of the distance between two nodes: to the last bit."""
+ITERATIONS = 60
+"""Budget for a crossing; eight are usual."""
+
+RESOLUTION = 1e-15
+"""Of a crossing, in shares of the step."""
 
 SAMPLES = 33
 """Places on a step at which a largest value is sought between the nodes."""
@@ -174,35 +177,24 @@ def _largest_sample(values, i, state, sign):  # type: ignore[no-untyped-def]
 def _entry(nodes, m, begin, width, d, final, band):  # type: ignore[no-untyped-def]
     """Place on a step, between two of its nodes, at which QL1 enters a band around a flow."""
     c = _pressures(nodes)
-    low, high = NODES[m], NODES[m + 1]
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if abs(_flows_at(c, middle, begin, width, d)[0] - final) > band:
-            low = middle
-        else:
-            high = middle
-    return high
+    outside = _value_at(c, NODES[m], 0.0, final, begin, width, d)
+    edge = final + math.copysign(band, outside)
+    return _crossing(c, NODES[m], NODES[m + 1], 0.0, edge, begin, width, d)
 
 
 @compiled
 def _part(nodes, end, begin, width, d, reference):  # type: ignore[no-untyped-def]
-    """Integrate the error and its magnitude over [0, end] of a step, piece by piece between its zeros."""
+    """Integrate QL1 - QL2 less a reference, and its magnitude, over [0, end] of a step, between its zeros."""
     c = _pressures(nodes)
     signed, magnitude, cut = 0.0, 0.0, 0.0
-    place, here = 0.0, _error_at(c, 0.0, begin, width, d, reference)
+    place, here = 0.0, _value_at(c, 0.0, 1.0, reference, begin, width, d)
     for m in range(1, NODES.size):
         after = NODES[m] * end
-        there = _error_at(c, after, begin, width, d, reference)
+        there = _value_at(c, after, 1.0, reference, begin, width, d)
         if here * there < 0.0:
-            low, high = place, after
-            for _ in range(BISECTIONS):
-                middle = 0.5 * (low + high)
-                if _error_at(c, middle, begin, width, d, reference) * here > 0.0:
-                    low = middle
-                else:
-                    high = middle
-            piece = _piece(c, cut, high, begin, width, d, reference)
-            signed, magnitude, cut = signed + piece, magnitude + abs(piece), high
+            zero = _crossing(c, place, after, 1.0, reference, begin, width, d)
+            piece = _piece(c, cut, zero, begin, width, d, reference)
+            signed, magnitude, cut = signed + piece, magnitude + abs(piece), zero
         place, here = after, there
     piece = _piece(c, cut, end, begin, width, d, reference)
     return signed + piece, magnitude + abs(piece)
@@ -210,11 +202,36 @@ def _part(nodes, end, begin, width, d, reference):  # type: ignore[no-untyped-de
 
 @compiled
 def _piece(c, left, right, begin, width, d, reference):  # type: ignore[no-untyped-def]
-    """Integrate the error over a part of a step, in shares of its width."""
+    """Integrate QL1 - QL2 less a reference over a part of a step, in shares of its width."""
     total = 0.0
     for m in range(NODES.size):
-        total += NODE_WEIGHTS[m] * _error_at(c, left + (right - left) * NODES[m], begin, width, d, reference)
+        total += NODE_WEIGHTS[m] * _value_at(c, left + (right - left) * NODES[m], 1.0, reference, begin, width, d)
     return total * (right - left)
+
+
+@compiled
+def _crossing(c, left, right, share, reference, begin, width, d):  # type: ignore[no-untyped-def]
+    """Find where `_value_at` changes its sign between two places: false position, by Illinois.
+
+    Dowell and Jarratt, "A modified regula falsi method for computing the root of an equation", BIT 11 (1971).
+    """
+    low = _value_at(c, left, share, reference, begin, width, d)
+    high = _value_at(c, right, share, reference, begin, width, d)
+    place, kept = right, 0
+    for _ in range(ITERATIONS):
+        before, place = place, left + (right - left) * (low / (low - high))
+        if not abs(place - before) > RESOLUTION:
+            break
+        value = _value_at(c, place, share, reference, begin, width, d)
+        if value * high > 0.0:
+            right, high = place, value
+            low *= 0.5 if kept == -1 else 1.0
+            kept = -1
+        else:
+            left, low = place, value
+            high *= 0.5 if kept == 1 else 1.0
+            kept = 1
+    return place
 
 
 @compiled
@@ -227,12 +244,7 @@ def _pressures(nodes):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _error_at(c, theta, begin, width, d, reference):  # type: ignore[no-untyped-def]
-    flows = _flows_at(c, theta, begin, width, d)
-    return flows[0] - flows[1] - reference
-
-
-@compiled
-def _flows_at(c, theta, begin, width, d):  # type: ignore[no-untyped-def]
-    """Load flows at a place on a step, from the pressures' polynomials there."""
-    return load_flows(begin + theta * width, value_at(theta, c[0]), value_at(theta, c[1]), d)
+def _value_at(c, theta, share, reference, begin, width, d):  # type: ignore[no-untyped-def]
+    """QL1, less a share of QL2, less a reference, at a place on a step, from the pressures' polynomials there."""
+    flows = load_flows(begin + theta * width, value_at(theta, c[0]), value_at(theta, c[1]), d)
+    return flows[0] - share * flows[1] - reference
