@@ -127,7 +127,7 @@ class Runner:
     def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
         """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
         longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
-        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in longest)
+        tasks = (delayed(work_as_process)(self._text, self._store, run) for run in longest)
         pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
         return list(pool(tasks))
 
@@ -152,7 +152,7 @@ class Runner:
             return [self._work_here(run, problem, simulate) for run in runs]
 
     def _work_here(self, run: Run, problem: Problem, simulate: Simulate) -> Ending:
-        return work(self._campaign, problem, self._store.folder, run, simulate)
+        return work(self._campaign, problem, self._store, run, simulate)
 
     def _raise_first(self, endings: Sequence[Ending]) -> None:
         for ending in endings:
