@@ -118,6 +118,8 @@ def status(store: Path, as_json: bool) -> None:
     from divideropt.store import Store
 
     found = read_status(Store(store))
+    if found.damage is not None:
+        _say(f"{found.damage}; the numbers here are from the logs")
     if as_json:
         _write_data(json.dumps(dataclasses.asdict(found), indent=2) + "\n")
         return

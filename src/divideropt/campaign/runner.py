@@ -88,6 +88,9 @@ class Runner:
             print(f"the old store is now {aside}", file=self._words)
         with self._store.writing(), self._interruption.signals():
             self._take_campaign()
+            changed = self._store.keep_fingerprint()
+            if changed is not None:
+                print(changed, file=self._words)
             warm_up(problem)
             self._raise_first(self._drive(problem))
             return self._write_fronts(problem, verifier)
