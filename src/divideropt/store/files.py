@@ -74,7 +74,7 @@ def publish_folder(path: Path, write: Write, allowed: Check = _always) -> None:
     path = path.resolve()
     folder = path.parent
     make_folder(folder.parent)
-    with _staged(folder, lambda staging: _fill(staging, path.name, write), allowed) as staging:
+    with _staged(folder, lambda staging: _fill(staging, path, write), allowed) as staging:
         try:
             staging.rename(folder)  # which replaces no folder but an empty one
         except OSError as error:
@@ -158,10 +158,10 @@ def _staged(target: Path, write: Write, allowed: Check) -> Iterator[Path]:
             raise
 
 
-def _fill(folder: Path, name: str, write: Write) -> None:
-    folder.mkdir()
-    write(folder / name)
-    _force(folder / name, folder)
+def _fill(staging: Path, path: Path, write: Write) -> None:
+    staging.mkdir()
+    write(staging / path.name)
+    _force(staging / path.name, path.parent)
 
 
 def _link(old: Path, new: Path) -> None:

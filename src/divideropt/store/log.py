@@ -28,11 +28,12 @@ class RunLog:
         self._waiting = 0
 
     def replay(self) -> Iterator[Evaluations]:
-        """Yield the logged batches in order, and make ready to append after the last.
+        """Yield the logged batches in order, and make ready to append after the last; forget what is not on disk.
 
         Raises:
             StoreError: A part is damaged, missing or not this run's.
         """
+        self._pending, self._waiting = [], 0
         for table in self._parts.read():
             whole = self._schema.evaluations(table)
             for begin, end in pairwise([*_starts(table["batch"].to_numpy()).tolist(), table.num_rows]):

@@ -54,12 +54,13 @@ class Parts:
         return self._rows
 
     def read(self) -> Iterator[pa.Table]:
-        """Yield the parts in order, and make ready to append after the last.
+        """Yield the parts in order, and make ready to append after the last; what is not on disk is forgotten.
 
         Raises:
             StoreError: A part is damaged, missing, of another version or another campaign's.
         """
-        self._rows = 0
+        self._pending = []
+        self._rows = self._flushed = 0
         for path in sorted(self._folder.glob("part-*.parquet")):
             if path.name != self._name(self._rows):
                 raise StoreError(f"{path}: the part before it is missing; {self._remedy}")
