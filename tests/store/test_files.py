@@ -69,7 +69,7 @@ def test_after_a_failed_fsync_nothing_is_published_and_nothing_is_tried_again(tm
     assert not path.exists()
     assert [p for p in tmp_path.rglob("*") if p != path.parent] == []
     with pytest.raises(
-        DiskError, match=r"a forced write \(fsync\) failed here before, and this process writes here no"
+        DiskError, match=r"Input/output error when a write was forced to disk \(fsync\), so this process writes"
     ):
         way(path, writing("x"))  # the disk is mended, but this process cannot know what it lost
     way(tmp_path / "other" / "part", writing("x")) if way is publish_folder else way(tmp_path / "part", writing("x"))

@@ -16,7 +16,7 @@ from divideropt.campaign.extend import check_extends
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import Run, build_problem, plan_runs
-from divideropt.campaign.progress import Display
+from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
 from divideropt.errors import NoFeasibleDesignError, StoreError
@@ -85,12 +85,12 @@ class Runner:
         verifier = Verifier(self._campaign, problem, self._store, self._workers, self._words, self._interruption)
         aside = self._store.move_aside() if fresh else None
         if aside is not None:
-            print(f"the old store is now {aside}", file=self._words)
+            say(f"the old store is now {aside}", self._words)
         with self._store.writing(), self._interruption.signals():
             self._take_campaign()
             changed = self._store.keep_fingerprint()
             if changed is not None:
-                print(changed, file=self._words)
+                say(changed, self._words)
             warm_up(problem)
             self._raise_first(self._drive(problem))
             return self._write_fronts(problem, verifier)

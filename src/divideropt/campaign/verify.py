@@ -13,7 +13,7 @@ from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
-from divideropt.campaign.progress import Counter
+from divideropt.campaign.progress import Counter, say
 from divideropt.campaign.reference import reference_problem
 from divideropt.campaign.worker import STOP_FILE, simulate_again, warm_up
 from divideropt.errors import DamagedFileError, NoFeasibleDesignError, UsageError
@@ -55,7 +55,7 @@ def verify_store(store: Store, workers: int | None, words: TextIO, again: str) -
     with store.writing(), interruption.signals():
         changed = store.keep_fingerprint()
         if changed is not None:
-            print(changed, file=words)
+            say(changed, words)
         fronts = _fronts(store, campaign, problem, verifier.schema, words)
         points = list(dict.fromkeys(name for front in fronts.values() for name in front["design_id"].to_pylist()))
         if not points:
@@ -125,7 +125,7 @@ class Verifier:
         known = log.table()
         written = self._write(fronts, known)
         if self._reference is None:
-            print("the model offers no reference(), so the fronts say `verified: no`", file=self._words)
+            say("the model offers no reference(), so the fronts say `verified: no`", self._words)
             return written
         before = set(known["design_id"].to_pylist())
         missing = [name for name in wanted if name not in before]
@@ -181,7 +181,7 @@ def _fronts(
     try:
         found = {name: store.read_front(name, schema) for name in names}
     except DamagedFileError as error:
-        print(f"{error}; here the fronts are made again", file=words)
+        say(f"{error}; here the fronts are made again", words)
         runs = {name: summarise(store.log(name, schema).read(), problem, schema).front for name in sorted(names[1:])}
         found = {"combined": combined_front(list(runs.values()), problem, schema), **runs}
     if found["combined"] is None:

@@ -21,9 +21,9 @@ Check = Callable[[], None]
 
 _LINKLESS = (EPERM, EOPNOTSUPP, ENOSYS, EMLINK)
 
-_unsure: set[Path] = set()
-"""Folders of which a forced write failed in this process: what the system says of their files from then on is not
-known to be on disk, a second fsync would say it is, so nothing is written there any more."""
+_unsure: dict[Path, str] = {}
+"""Folders in which a forced write failed in this process, and how: what the system says of their files is not known
+to be on disk, a second fsync would say it is, so nothing is written there any more."""
 
 
 def _always() -> None:
@@ -73,6 +73,7 @@ def publish_folder(path: Path, write: Write, allowed: Check = _always) -> None:
     """
     path = path.resolve()
     folder = path.parent
+    allowed()  # a store that is gone is not made anew
     make_folder(folder.parent)
     with _staged(folder, lambda staging: _fill(staging, path, write), allowed) as staging:
         try:
@@ -141,8 +142,11 @@ def disk_errors(path: Path) -> Iterator[None]:
 @contextmanager
 def _staged(target: Path, write: Write, allowed: Check) -> Iterator[Path]:
     """Write a file or a folder under a temporary name beside `target`, and remove it where it gets no other."""
-    if target in _unsure or target.parent in _unsure:
-        raise _refused(target, "a forced write (fsync) failed here before, and this process writes here no more")
+    before = _unsure.get(target) or _unsure.get(target.parent)
+    if before:
+        raise _refused(
+            target, f"{before} when a write was forced to disk (fsync), so this process writes here no more"
+        )
     temporary = target.with_name(_temporary_name(target.name))
     with disk_errors(target):
         try:
@@ -183,8 +187,8 @@ def _force(path: Path, unsure: Path) -> None:
     descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
     try:
         os.fsync(descriptor)
-    except OSError:
-        _unsure.add(unsure)
+    except OSError as error:
+        _unsure[unsure] = str(error.strerror)
         raise
     finally:
         os.close(descriptor)
