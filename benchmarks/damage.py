@@ -18,6 +18,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pandas as pd
@@ -54,7 +55,8 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=100, help="How often each file is cut off, and a bit turned.")
     times = parser.parse_args().times
     parts.FLUSH_ROWS, parts.FLUSH_SECONDS = 40, 1e9  # two parts or three a run, none of them by the clock
-    with tempfile.TemporaryDirectory() as name:
+    plotly = mock.patch("divideropt.report.document.get_plotlyjs", lambda: "")  # 5 MB that are the same in every page
+    with plotly, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "toy.yaml").write_text(CAMPAIGN.replace("GENERATIONS", "6"), encoding="utf-8")
         asked("run", str(folder / "toy.yaml"), "--store", str(folder / "whole"))

@@ -11,7 +11,7 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError, StoreError, UsageError
 from divideropt.models.divider import Divider
-from divideropt.store import RunLog, Store, TableSchema
+from divideropt.store import RunLog, Store, TableSchema, fingerprint
 from toy_model import toy_problem
 
 TEXT = """
@@ -94,6 +94,19 @@ def test_a_store_that_lost_its_tail_is_completed_to_the_same_bits(whole, tmp_pat
             part.unlink()
     run(folder)
     assert_same(folder, whole)
+
+
+def test_what_computes_otherwise_than_before_is_said_and_the_bits_decide(whole, tmp_path, monkeypatch):
+    folder = tmp_path / "store"
+    shutil.copytree(whole, folder)
+    shutil.rmtree(folder / "evaluations" / "nsga2-2")
+    before = fingerprint.fingerprint()
+    monkeypatch.setattr(fingerprint, "fingerprint", lambda: before | {"numpy": "9.9", "processor": "abacus"})
+    _, words = run(folder)
+    (line,) = (line for line in words.splitlines() if "was written with" in line)
+    assert f"numpy {before['numpy']} (now 9.9), processor {before['processor']} (now abacus); whether that" in line
+    assert_same(folder, whole)
+    assert "was written with" not in run(folder)[1]
 
 
 def test_workers_do_not_change_a_bit(whole, tmp_path):

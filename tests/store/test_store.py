@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from divideropt.errors import DamagedFileError, DiskError, StoreError, StoreInUseError, UsageError
-from divideropt.store import RunLog, Store, TableSchema
+from divideropt.store import Parts, RunLog, Store, TableSchema
 from divideropt.store.files import publish
 from divideropt.store.tables import worded
 from toy_model import Toy, toy_problem
@@ -209,3 +209,20 @@ def test_an_old_store_is_moved_aside_not_deleted(tmp_path):
     aside = Store(folder).move_aside()
     assert not folder.exists()
     assert Store(aside).read_campaign() == "name: x\n"
+
+
+@pytest.mark.parametrize(("rate", "most"), [(500, 80), (50_000, 70)])
+def test_a_million_rows_are_few_parts(tmp_path, problem, monkeypatch, rate, most):
+    now, written = [0.0], []
+    monkeypatch.setattr("divideropt.store.parts.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("divideropt.store.parts.write_table", lambda path, table, _: written.append(table.num_rows))
+    schema = TableSchema.of(problem)
+    table = Parts(tmp_path / "x", schema.results, "restore it", lambda *_: None, lambda: None)
+    batch = schema.result_rows(["a"] * 200, ["b"] * 200, evaluations(problem, 200, 1))
+    for _ in range(5000):
+        now[0] += 200 / rate
+        table.append(batch)
+    table.flush()
+    assert sum(written) == 1_000_000
+    assert len(written) < most
+    assert max(written) / rate <= 61  # seconds that a kill may cost
