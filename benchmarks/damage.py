@@ -1,10 +1,13 @@
 """Damages every file of a store, in many ways each, and asks every command what it makes of it.
 
     python benchmarks/damage.py [--times 100]
+    python benchmarks/damage.py --page-checksums
 
 Each file is cut off at so many random places, and has a random bit turned at so many. Each time `status`, `report`,
 `verify` and `run` are called on a copy. Right is what says and leaves the same as on the whole store, or exit code 4
 with the file's name; anything else is counted as wrong, and the command ends with 1.
+
+The second form counts what parquet's own page checksums would have let through: it turns every fifth bit of a part.
 """
 
 import argparse
@@ -22,6 +25,8 @@ from unittest import mock
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 from failpoints import CAMPAIGN, same, tables
 
 from divideropt import cli
@@ -53,7 +58,12 @@ def main() -> None:
     """Print the counts, and end with 1 where a command was wrong."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--times", type=int, default=100, help="How often each file is cut off, and a bit turned.")
-    times = parser.parse_args().times
+    parser.add_argument("--page-checksums", action="store_true", help="What these alone would let through.")
+    asked_for = parser.parse_args()
+    if asked_for.page_checksums:
+        page_checksums_alone()
+        return
+    times = asked_for.times
     parts.FLUSH_ROWS, parts.FLUSH_SECONDS = 40, 1e9  # two parts or three a run, none of them by the clock
     plotly = mock.patch("divideropt.report.document.get_plotlyjs", lambda: "")  # 5 MB that are the same in every page
     with plotly, tempfile.TemporaryDirectory() as name:
@@ -102,6 +112,31 @@ def damage_all(folder: Path, times: int) -> bool:
             print(f"{path!s:52} {kind:9} {counts['same']:6} {counts['refused']:8} {counts['wrong']:6}", flush=True)
     print(f"{wrong} wrong")
     return wrong == 0
+
+
+def page_checksums_alone() -> None:
+    """Print how a part with every fifth bit turned, one at a time, is read where only the pages have checksums."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.parquet"
+        random = np.random.default_rng(1)
+        columns = {name: pa.array(random.random(24)) for name in ("x1", "x2", "x3", "f1", "f2", "spare")}
+        texts = {"design_id": [f"nsga2-1/{i}" for i in range(24)], "outcome": ["ok"] * 20 + ["unsettled"] * 4}
+        whole = pa.table({**texts, "batch": np.repeat([0, 1], 12), **columns})
+        pq.write_table(whole, path, write_page_checksum=True)
+        content, counts = path.read_bytes(), Counter[str]()
+        for bit in range(0, 8 * len(content), 5):
+            damaged = bytearray(content)
+            damaged[bit // 8] ^= 1 << bit % 8
+            try:
+                table = pq.ParquetFile(pa.BufferReader(bytes(damaged)), page_checksum_verification=True).read()
+            except (pa.ArrowException, OSError, ValueError):
+                counts["refused"] += 1
+                continue
+            if not table.schema.equals(whole.schema):
+                counts["refused, by its columns"] += 1
+            else:
+                counts["read right" if table.equals(whole) else "read wrong"] += 1
+    print(f"{counts.total()} bits: " + ", ".join(f"{count} {name}" for name, count in sorted(counts.items())))
 
 
 def cut_off(content: bytes, times: int, random: np.random.Generator) -> Iterator[bytes]:

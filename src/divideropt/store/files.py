@@ -4,7 +4,7 @@ import os
 import secrets
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from errno import EMLINK, ENOSYS, ENOTEMPTY, EOPNOTSUPP, EPERM
 from pathlib import Path
 
@@ -60,7 +60,8 @@ def publish_once(path: Path, write: Write, allowed: Check = _always) -> None:
     path = path.resolve()
     with _staged(path, write, allowed) as temporary:
         _link(temporary, path)
-        temporary.unlink()
+        with suppress(OSError):  # then the next writer removes it
+            temporary.unlink()
         _force(path.parent, path.parent)
 
 
