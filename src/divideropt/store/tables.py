@@ -1,8 +1,8 @@
 """A table as a file of the store: whole, checked, with the columns and the version that are expected.
 
 Parquet's page checksums cover the pages, not the headers and the footer that say how to read them: of 6,634 single
-bits turned in a part, one read wrong with them (`benchmarks/damage.py --page-checksums`). So a file also has a digest of all its bytes, in a gap before its
-footer, where no reader of parquet looks.
+bits turned in a part, one read wrong with them (`benchmarks/damage.py --page-checksums`). So a file also has a digest
+of all its bytes, in a gap before its footer, where no reader of parquet looks.
 """
 
 import hashlib
