@@ -91,6 +91,7 @@ class Runner:
             changed = self._store.keep_fingerprint()
             if changed is not None:
                 say(changed, self._words)
+            self._store.verification(verifier.schema).table()  # damage is said before hours are spent, not after
             warm_up(problem)
             self._raise_first(self._drive(problem))
             return self._write_fronts(problem, verifier)
