@@ -50,6 +50,10 @@ def main() -> None:
         traceback.print_exc()
         _say("divideropt: this is a bug in divideropt; the lines above say where. Nothing that was logged is lost.")
         code = 1
+    try:
+        sys.stderr.flush()
+    except OSError:  # nobody to hear it, and what is in the buffer would be flushed again when Python ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     sys.exit(code)
 
 
@@ -118,6 +122,8 @@ def status(store: Path, as_json: bool) -> None:
     from divideropt.store import Store
 
     found = read_status(Store(store))
+    if found.damage is not None:
+        _say(f"{found.damage}; the numbers here are from the logs")
     if as_json:
         _write_data(json.dumps(dataclasses.asdict(found), indent=2) + "\n")
         return

@@ -56,6 +56,10 @@ class StoreError(DivideroptError):
     exit_code = 4
 
 
+class DamagedFileError(StoreError):
+    """A file of the store is not as it was written; one that follows from the logs can be made again."""
+
+
 class NoFeasibleDesignError(DivideroptError):
     """The campaign ended and no design was feasible."""
 

@@ -1,6 +1,7 @@
 """A campaign from end to end on a model that costs nothing: resumed, extended, spread over workers."""
 
 import io
+import shutil
 from pathlib import Path
 
 import pandas as pd
@@ -10,7 +11,8 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError, StoreError, UsageError
 from divideropt.models.divider import Divider
-from divideropt.store import RunLog
+from divideropt.store import RunLog, Store, TableSchema, fingerprint
+from toy_model import toy_problem
 
 TEXT = """
 name: toy
@@ -92,6 +94,19 @@ def test_a_store_that_lost_its_tail_is_completed_to_the_same_bits(whole, tmp_pat
             part.unlink()
     run(folder)
     assert_same(folder, whole)
+
+
+def test_what_computes_otherwise_than_before_is_said_and_the_bits_decide(whole, tmp_path, monkeypatch):
+    folder = tmp_path / "store"
+    shutil.copytree(whole, folder)
+    shutil.rmtree(folder / "evaluations" / "nsga2-2")
+    before = fingerprint.fingerprint()
+    monkeypatch.setattr(fingerprint, "fingerprint", lambda: before | {"numpy": "9.9", "processor": "abacus"})
+    _, words = run(folder)
+    (line,) = (line for line in words.splitlines() if "was written with" in line)
+    assert f"numpy {before['numpy']} (now 9.9), processor {before['processor']} (now abacus); whether that" in line
+    assert_same(folder, whole)
+    assert "was written with" not in run(folder)[1]
 
 
 def test_workers_do_not_change_a_bit(whole, tmp_path):
@@ -189,11 +204,13 @@ def test_a_log_that_was_not_asked_for_is_refused(whole, tmp_path):
     folder = tmp_path / "store"
     run(folder)
     first = folder / "evaluations" / "nsga2-1"
-    second = folder / "evaluations" / "nsga2-2"
-    for part in first.iterdir():
-        part.unlink()
-    for part in second.iterdir():
-        part.rename(first / part.name)
+    schema = TableSchema.of(toy_problem())
+    others = list(Store(folder).log("nsga2-2", schema).replay())
+    shutil.rmtree(first)
+    log = Store(folder).log("nsga2-1", schema)
+    for batch in others:
+        log.append(batch)
+    log.flush()
     with pytest.raises(StoreError, match="batch 0 of the log is not the one the strategy asks for"):
         run(folder)
 

@@ -5,13 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
-from divideropt.errors import DiskError, StoreError, StoreInUseError, UsageError
-from divideropt.store import RunLog, Store, TableSchema
+from divideropt.errors import DamagedFileError, DiskError, StoreError, StoreInUseError, UsageError
+from divideropt.store import Parts, RunLog, Store, TableSchema
 from divideropt.store.files import publish
+from divideropt.store.tables import worded
 from toy_model import Toy, toy_problem
 
 
@@ -117,19 +119,35 @@ def test_a_part_that_lost_a_batch_is_noticed(tmp_path, problem):
     log.flush()
     part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
     table = pq.read_table(part)
-    pq.write_table(table.filter(pc.not_equal(table["batch"], 1)), part)
+    part.write_bytes(worded(table.filter(pc.not_equal(table["batch"], 1))))
     with pytest.raises(StoreError, match="batch 1 is missing"):
         list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
 
 
-def test_an_outcome_nobody_knows_is_refused(tmp_path, problem):
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("outcome", "bogus", "an outcome 'bogus', which this program does not know"),
+        ("design_id", "nsga2-1/1", "not the evaluations from nsga2-1/0 on"),
+        ("run", "nsga2-2", "not the evaluations from nsga2-1/0 on"),
+        ("batch", 7, "batch 0 is missing"),
+        ("x2", None, "nsga2-1/3 has a variable that is no number"),
+        ("x2", float("inf"), "nsga2-1/3 has a variable that is no number"),
+    ],
+)
+def test_what_no_run_can_have_logged_is_refused_by_the_files_name(tmp_path, problem, column, value, words):
     filled_log(Store(tmp_path), problem, batches=1)
     part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
     table = pq.read_table(part)
-    place = table.schema.get_field_index("outcome")
-    pq.write_table(table.set_column(place, table.schema.field(place), [["bogus"] * table.num_rows]), part)
-    with pytest.raises(StoreError, match="'bogus'"):
-        list(Store(tmp_path).log("nsga2-1", TableSchema.of(problem)).replay())
+    place, cells = table.schema.get_field_index(column), table[column].to_pylist()
+    for row in [3] if column == "x2" else range(table.num_rows):
+        cells[row] = value
+    field = table.schema.field(place)
+    part.write_bytes(worded(table.set_column(place, field, pa.array(cells, field.type))))
+    log = Store(tmp_path).log("nsga2-1", TableSchema.of(problem))
+    for read in (log.table, lambda: list(log.replay())):
+        with pytest.raises(DamagedFileError, match=rf"{part.name}: damaged \({words}"):
+            read()
 
 
 def test_only_regular_files_are_replaced(tmp_path):
@@ -190,4 +208,21 @@ def test_an_old_store_is_moved_aside_not_deleted(tmp_path):
     Store(folder).write_campaign("name: x\n")
     aside = Store(folder).move_aside()
     assert not folder.exists()
-    assert (aside / "campaign.yaml").read_text() == "name: x\n"
+    assert Store(aside).read_campaign() == "name: x\n"
+
+
+@pytest.mark.parametrize(("rate", "most"), [(500, 80), (50_000, 70)])
+def test_a_million_rows_are_few_parts(tmp_path, problem, monkeypatch, rate, most):
+    now, written = [0.0], []
+    monkeypatch.setattr("divideropt.store.parts.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("divideropt.store.parts.write_table", lambda path, table, _: written.append(table.num_rows))
+    schema = TableSchema.of(problem)
+    table = Parts(tmp_path / "x", schema.results, "restore it", lambda *_: None, lambda: None)
+    batch = schema.result_rows(["a"] * 200, ["b"] * 200, evaluations(problem, 200, 1))
+    for _ in range(5000):
+        now[0] += 200 / rate
+        table.append(batch)
+    table.flush()
+    assert sum(written) == 1_000_000
+    assert len(written) < most
+    assert max(written) / rate <= 61  # seconds that a kill may cost

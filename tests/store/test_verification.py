@@ -9,6 +9,7 @@ import pytest
 from divideropt.analysis import marked
 from divideropt.errors import StoreError
 from divideropt.store import Store, TableSchema
+from divideropt.store.tables import worded
 from toy_model import toy_problem
 
 PROBLEM = toy_problem()
@@ -62,7 +63,7 @@ def test_a_foreign_or_a_later_or_an_empty_part_is_refused_by_name(tmp_path):
         (table.replace_schema_metadata({}), "not a table of this program"),
         (table.slice(0, 0), "no rows"),
     ):
-        pq.write_table(wrong, part)
+        part.write_bytes(worded(wrong))
         with pytest.raises(StoreError, match=rf"part-000000008.*{words}"):
             read(tmp_path)
 

@@ -4,6 +4,7 @@ import json
 import threading
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TextIO
@@ -130,6 +131,10 @@ class Display:
         self._thread.join()
 
     def _show(self) -> None:
+        with suppress(OSError):  # nobody to see it
+            self._show_until_left()
+
+    def _show_until_left(self) -> None:
         if self._console.is_terminal:
             with Live(self._table(), console=self._console, auto_refresh=False) as live:
                 while not self._over.wait(SHOW_SECONDS):
@@ -175,6 +180,12 @@ class Display:
         return found
 
 
+def say(words: str, stream: TextIO) -> None:
+    """Print a line, whether or not there is anybody to hear it."""
+    with suppress(OSError):
+        print(words, file=stream, flush=True)
+
+
 class Counter:
     """Shows how far a count is until it is left: in place on a terminal, elsewhere a line now and then."""
 
@@ -201,7 +212,8 @@ class Counter:
 
     def _show(self, end: str) -> None:
         self._shown = time.monotonic()
-        self._console.print(self._words.format(self._count, self._total), end=end, soft_wrap=True)
+        with suppress(OSError):  # nobody to see it
+            self._console.print(self._words.format(self._count, self._total), end=end, soft_wrap=True)
 
 
 def _line(s: Standing) -> str:

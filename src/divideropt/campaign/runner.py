@@ -16,7 +16,7 @@ from divideropt.campaign.extend import check_extends
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import Run, build_problem, plan_runs
-from divideropt.campaign.progress import Display
+from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
 from divideropt.errors import NoFeasibleDesignError, StoreError
@@ -85,9 +85,13 @@ class Runner:
         verifier = Verifier(self._campaign, problem, self._store, self._workers, self._words, self._interruption)
         aside = self._store.move_aside() if fresh else None
         if aside is not None:
-            print(f"the old store is now {aside}", file=self._words)
+            say(f"the old store is now {aside}", self._words)
         with self._store.writing(), self._interruption.signals():
             self._take_campaign()
+            changed = self._store.keep_fingerprint()
+            if changed is not None:
+                say(changed, self._words)
+            self._store.verification(verifier.schema).table()  # damage is said before hours are spent, not after
             warm_up(problem)
             self._raise_first(self._drive(problem))
             return self._write_fronts(problem, verifier)
@@ -127,7 +131,7 @@ class Runner:
     def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
         """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
         longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
-        tasks = (delayed(work_as_process)(self._text, self._store.folder, run) for run in longest)
+        tasks = (delayed(work_as_process)(self._text, self._store, run) for run in longest)
         pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
         return list(pool(tasks))
 
@@ -152,7 +156,7 @@ class Runner:
             return [self._work_here(run, problem, simulate) for run in runs]
 
     def _work_here(self, run: Run, problem: Problem, simulate: Simulate) -> Ending:
-        return work(self._campaign, problem, self._store.folder, run, simulate)
+        return work(self._campaign, problem, self._store, run, simulate)
 
     def _raise_first(self, endings: Sequence[Ending]) -> None:
         for ending in endings:

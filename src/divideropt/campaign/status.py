@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from divideropt.analysis import hypervolume_history, summarise, tally
+from divideropt.analysis import combined_front, hypervolume_history, marked, summarise, tally
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
+from divideropt.errors import DamagedFileError
 from divideropt.store import Store, TableSchema
 
 
@@ -43,6 +44,7 @@ class StoreStatus:
         front: Designs on the combined front, None before it is written.
         verified: How many of them came out the same when they were simulated again by the model's reference.
         deviating: How many did not.
+        damage: What is wrong with the stored front, where that was made again from the logs; None where nothing is.
     """
 
     campaign: str
@@ -50,6 +52,7 @@ class StoreStatus:
     front: int | None
     verified: int | None
     deviating: int | None
+    damage: str | None
 
 
 def read_status(store: Store) -> StoreStatus:
@@ -62,9 +65,10 @@ def read_status(store: Store) -> StoreStatus:
     campaign = stored_campaign(store)
     problem = build_problem(campaign)
     schema, reference = TableSchema.of(problem), reference_of(campaign)
+    logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in plan_runs(campaign)}
     runs = []
     for run in plan_runs(campaign):
-        found = summarise(store.log(run.name, schema).read(), problem, schema)
+        found = logs[run.name]
         volumes = [] if reference is None else hypervolume_history(found.told, reference, [found.evaluations])
         runs.append(
             RunStatus(
@@ -78,8 +82,15 @@ def read_status(store: Store) -> StoreStatus:
                 hypervolume=volumes[0] if volumes else None,
             )
         )
-    front = store.read_front("combined", schema)
+    damage = None
+    try:
+        front = store.read_front("combined", schema)
+    except DamagedFileError as error:
+        damage = str(error)
+        combined = combined_front([logs[name].front for name in sorted(logs)], problem, schema)
+        known = store.verification(schema).table()
+        front = marked(combined, known, problem, schema, campaign.verification.share)
     if front is None:
-        return StoreStatus(campaign.name, tuple(runs), None, None, None)
+        return StoreStatus(campaign.name, tuple(runs), None, None, None, None)
     count = tally(front, schema)
-    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate)
+    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate, damage)

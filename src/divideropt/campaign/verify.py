@@ -7,16 +7,16 @@ import numpy as np
 import pyarrow as pa
 from joblib import Parallel, delayed, parallel_config
 
-from divideropt.analysis import Tally, marked, tally
+from divideropt.analysis import Tally, combined_front, marked, summarise, tally
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
-from divideropt.campaign.progress import Counter
+from divideropt.campaign.progress import Counter, say
 from divideropt.campaign.reference import reference_problem
 from divideropt.campaign.worker import STOP_FILE, simulate_again, warm_up
-from divideropt.errors import NoFeasibleDesignError, UsageError
+from divideropt.errors import DamagedFileError, NoFeasibleDesignError, UsageError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
 from divideropt.store import Store, TableSchema
@@ -53,7 +53,10 @@ def verify_store(store: Store, workers: int | None, words: TextIO, again: str) -
             "`divideropt.models.Verifiable` says what it is"
         )
     with store.writing(), interruption.signals():
-        fronts = _stored_fronts(store, campaign, verifier.schema)
+        changed = store.keep_fingerprint()
+        if changed is not None:
+            say(changed, words)
+        fronts = _fronts(store, campaign, problem, verifier.schema, words)
         points = list(dict.fromkeys(name for front in fronts.values() for name in front["design_id"].to_pylist()))
         if not points:
             raise NoFeasibleDesignError(
@@ -122,7 +125,7 @@ class Verifier:
         known = log.table()
         written = self._write(fronts, known)
         if self._reference is None:
-            print("the model offers no reference(), so the fronts say `verified: no`", file=self._words)
+            say("the model offers no reference(), so the fronts say `verified: no`", self._words)
             return written
         before = set(known["design_id"].to_pylist())
         missing = [name for name in wanted if name not in before]
@@ -170,10 +173,17 @@ class Verifier:
             yield design
 
 
-def _stored_fronts(store: Store, campaign: Campaign, schema: TableSchema) -> dict[str, pa.Table]:
-    """Read the fronts, the combined one first, whose points are wanted most."""
+def _fronts(
+    store: Store, campaign: Campaign, problem: Problem, schema: TableSchema, words: TextIO
+) -> dict[str, pa.Table]:
+    """Read the fronts, the combined one first, whose points are wanted most; from the logs where one is damaged."""
     names = ("combined", *(run.name for run in plan_runs(campaign)))
-    found = {name: store.read_front(name, schema) for name in names}
+    try:
+        found = {name: store.read_front(name, schema) for name in names}
+    except DamagedFileError as error:
+        say(f"{error}; here the fronts are made again", words)
+        runs = {name: summarise(store.log(name, schema).read(), problem, schema).front for name in sorted(names[1:])}
+        found = {"combined": combined_front(list(runs.values()), problem, schema), **runs}
     if found["combined"] is None:
         raise UsageError(f"{store.folder}: there are no fronts yet; run the campaign to its end first")
     return {name: front for name, front in found.items() if front is not None}

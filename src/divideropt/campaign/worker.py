@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import cast
 
 from divideropt.campaign.config import Campaign
@@ -43,11 +42,11 @@ class Ending:
     error: DivideroptError | None = None
 
 
-def work_as_process(text: str, folder: Path, run: Run) -> Ending:
+def work_as_process(text: str, store: Store, run: Run) -> Ending:
     """Do one run of a campaign, given as resolved text, in a worker process of its own."""
     leave_signals_to_parent()
     campaign, problem = _prepared(text)
-    return work(campaign, problem, folder, run, problem.simulate)
+    return work(campaign, problem, store, run, problem.simulate)
 
 
 def simulate_share(text: str, designs: FloatArray) -> Evaluations:
@@ -68,20 +67,19 @@ def warm_up(problem: Problem) -> None:
     problem.simulate(middle[None])
 
 
-def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate: Simulate) -> Ending:
+def work(campaign: Campaign, problem: Problem, store: Store, run: Run, simulate: Simulate) -> Ending:
     """Do one run in this process.
 
     Args:
         campaign: As resolved.
         problem: Made from it.
-        folder: The store's.
+        store: Its store, which the caller or its parent holds for writing.
         run: Which run.
         simulate: Evaluates designs the log does not know.
 
     Returns:
         How it ended.
     """
-    store = Store(folder)
     stop = store.status_folder / STOP_FILE
     reference = reference_of(campaign)
     reporter = Reporter(store.status_folder / f"{run.name}.json", run.name, run.options.budget, problem, reference)

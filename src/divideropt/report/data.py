@@ -12,6 +12,7 @@ from divideropt.analysis import Summary, Verified, combined_front, marked, summa
 from divideropt.analysis.summary import Best
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
+from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.report.display import Axis, axis_of
@@ -172,7 +173,13 @@ def _front(
     would contradict every count beside it.
     """
     table = combined_front([logs[name].front for name in sorted(logs)], problem, schema)
-    stored = store.read_front("combined", schema)
+    try:
+        stored = store.read_front("combined", schema)
+    except DamagedFileError:
+        return table, (
+            "fronts/combined.parquet is damaged: the front below is that of all evaluations, and the next "
+            "`divideropt run` writes the file again.",
+        )
     if stored is None:
         return table, ("The campaign has not ended: the front below is that of the evaluations logged so far.",)
     if stored["design_id"].to_pylist() != table["design_id"].to_pylist():

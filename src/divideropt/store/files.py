@@ -1,22 +1,42 @@
-"""Publishing a file: written under a temporary name, forced to disk, renamed, the folder forced to disk."""
+"""Publishing a file: written under a temporary name, forced to disk, given its name, the folder forced to disk."""
 
 import os
+import secrets
+import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from errno import EMLINK, ENOSYS, ENOTEMPTY, EOPNOTSUPP, EPERM
 from pathlib import Path
 
-from divideropt.errors import DiskError, UsageError
+from divideropt.errors import DiskError, StoreInUseError, UsageError
 
 TEMPORARY_PREFIX = ".new-"
 """Readers pass over names that begin with a dot."""
 
+Write = Callable[[Path], object]
+"""Writes the content to the path it is given."""
 
-def publish(path: Path, write: Callable[[Path], None]) -> None:
-    """Write a file so that it is there whole or not at all, also after a crash.
+Check = Callable[[], None]
+"""Raises where this process may not publish any more; asked right before a file gets its name."""
+
+_LINKLESS = (EPERM, EOPNOTSUPP, ENOSYS, EMLINK)
+
+_unsure: dict[Path, str] = {}
+"""Folders in which a forced write failed in this process, and how: what the system says of their files is not known
+to be on disk, a second fsync would say it is, so nothing is written there any more."""
+
+
+def _always() -> None:
+    return
+
+
+def publish(path: Path, write: Write, allowed: Check = _always) -> None:
+    """Write a file so that it is there whole or not at all, also after a crash; an older one is replaced at once.
 
     Args:
-        path: Where it shall be; an older file there is replaced at once.
+        path: Where it shall be; its folder is there.
         write: Writes the content to the path it is given.
+        allowed: Asked before the old file is replaced.
 
     Raises:
         UsageError: `path` is there and no regular file, such as a device.
@@ -25,16 +45,90 @@ def publish(path: Path, write: Callable[[Path], None]) -> None:
     path = path.resolve()  # a link stays a link to what is replaced
     if path.exists() and not path.is_file():
         raise UsageError(f"{path}: not a regular file, so it is not replaced; name another")
-    temporary = path.with_name(f"{TEMPORARY_PREFIX}{os.getpid()}-{path.name}")
-    with disk_errors(path):
+    with _staged(path, write, allowed) as temporary:
+        temporary.replace(path)
+        _force(path.parent, path.parent)
+
+
+def publish_once(path: Path, write: Write, allowed: Check = _always) -> None:
+    """Write a file that nothing ever replaces: it gets its name by a link, which fails where the name is taken.
+
+    Raises:
+        StoreInUseError: The file is there: another process writes here too.
+        DiskError: The disk refused, the folder is gone, or its filesystem knows no links; nothing is at `path`.
+    """
+    path = path.resolve()
+    with _staged(path, write, allowed) as temporary:
+        _link(temporary, path)
+        with suppress(OSError):  # then the next writer removes it
+            temporary.unlink()
+        _force(path.parent, path.parent)
+
+
+def publish_folder(path: Path, write: Write, allowed: Check = _always) -> None:
+    """Write a file whose folder is not there yet: the folder appears, by rename, with the file in it.
+
+    Raises:
+        StoreInUseError: The folder has got files meanwhile: another process writes here too.
+        DiskError: The disk refused; the folder is not there.
+    """
+    path = path.resolve()
+    folder = path.parent
+    allowed()  # a store that is gone is not made anew
+    make_folder(folder.parent)
+    with _staged(folder, lambda staging: _fill(staging, path, write), allowed) as staging:
         try:
-            write(temporary)
-            _force(temporary, os.O_RDWR)
-            temporary.rename(path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
+            staging.rename(folder)  # which replaces no folder but an empty one
+        except OSError as error:
+            if error.errno == ENOTEMPTY:
+                raise _taken(folder) from error
             raise
-        _force(path.parent, os.O_RDONLY)
+        _force(folder.parent, folder)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and what is missing above it, each forced to disk before the next.
+
+    Raises:
+        DiskError: The disk refused.
+    """
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    with disk_errors(folder):
+        for path in reversed(missing):
+            path.mkdir(exist_ok=True)
+            _force(path.parent, path)
+
+
+def check_links(folder: Path) -> None:
+    """Try whether a folder's filesystem knows links, before anything is computed that could not be published.
+
+    Raises:
+        DiskError: It does not, or the disk refused.
+    """
+    first, second = (folder / _temporary_name("link") for _ in range(2))
+    with disk_errors(folder):
+        try:
+            first.touch()
+            _link(first, second)
+        finally:
+            first.unlink(missing_ok=True)
+            second.unlink(missing_ok=True)
+
+
+def clear_temporaries(folder: Path) -> None:
+    """Remove what killed processes left in a folder; for its only writer to call.
+
+    Raises:
+        DiskError: The disk refused.
+    """
+    with disk_errors(folder):
+        for path in folder.glob(f"{TEMPORARY_PREFIX}*"):
+            if _lives(path.name.removeprefix(TEMPORARY_PREFIX).split("-")[0]):
+                continue  # somebody is writing the report
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -43,17 +137,98 @@ def disk_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise DiskError(
-            f"{path}: {reason}. What was logged before is intact: make room or mend the folder, then run the "
-            "same command again."
-        ) from error
+        raise _refused(path, error.strerror or str(error)) from error
 
 
-def _force(path: Path, flags: int) -> None:
-    """Force a file or a folder to disk."""
-    descriptor = os.open(path, flags)
+@contextmanager
+def _staged(target: Path, write: Write, allowed: Check) -> Iterator[Path]:
+    """Write a file or a folder under a temporary name beside `target`, and remove it where it gets no other."""
+    before = _unsure.get(target) or _unsure.get(target.parent)
+    if before:
+        raise _refused(
+            target, f"{before} when a write was forced to disk (fsync), so this process writes here no more"
+        )
+    temporary = target.with_name(_temporary_name(target.name))
+    with disk_errors(target):
+        try:
+            allowed()
+            write(temporary)
+            _force(temporary, target.parent if temporary.is_file() else target)
+            allowed()
+            yield temporary
+        except BaseException as error:
+            _remove(temporary)
+            if isinstance(error, FileNotFoundError):
+                allowed()  # a new owner of the store clears what an earlier one was writing
+            raise
+
+
+def _fill(staging: Path, path: Path, write: Write) -> None:
+    staging.mkdir()
+    write(staging / path.name)
+    _force(staging / path.name, path.parent)
+
+
+def _link(old: Path, new: Path) -> None:
+    try:
+        os.link(old, new)
+    except FileExistsError as error:
+        raise _taken(new) from error
+    except OSError as error:
+        if error.errno in _LINKLESS:
+            raise DiskError(
+                f"{new.parent}: this filesystem knows no hard links ({error.strerror}), by which parts are published "
+                "without ever replacing one; name a --store on another"
+            ) from error
+        raise
+
+
+def _force(path: Path, unsure: Path) -> None:
+    """Force a file or a folder to disk; where that fails, `unsure` is written no more. Never tried again."""
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        _unsure[unsure] = str(error.strerror)
+        raise
     finally:
         os.close(descriptor)
+
+
+def _temporary_name(name: str) -> str:
+    """The process is in it, so that what a dead one left is known; and something random, for other machines."""
+    return f"{TEMPORARY_PREFIX}{os.getpid()}-{secrets.token_hex(4)}-{name}"
+
+
+def _lives(process: str) -> bool:
+    """Whether there is another process of that number on this machine."""
+    if not process.isdigit() or int(process) == os.getpid():
+        return False
+    try:
+        os.kill(int(process), 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _taken(path: Path) -> StoreInUseError:
+    return StoreInUseError(
+        f"{path}: there already, so another process writes to this store; nothing was replaced. Wait until it is "
+        "done, then run the same command again"
+    )
+
+
+def _refused(path: Path, reason: str) -> DiskError:
+    return DiskError(
+        f"{path}: {reason}. What was logged before is intact: make room or mend the folder, then run the "
+        "same command again."
+    )

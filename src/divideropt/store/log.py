@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
-from divideropt.errors import StoreError
 from divideropt.problem import Evaluations
+from divideropt.store.files import Check
 from divideropt.store.parts import Parts
 from divideropt.store.schema import TableSchema
 
@@ -18,29 +19,24 @@ _REMEDY = "restore it, or start anew (--fresh)"
 class RunLog:
     """Reads and extends the parts of one run; each holds whole batches. One process writes to a run."""
 
-    def __init__(self, folder: Path, run: str, schema: TableSchema) -> None:
-        """Open a run's folder, which need not exist yet."""
-        self._folder, self._run, self._schema = folder, run, schema
-        self._parts = Parts(folder, schema.arrow, _REMEDY)
-        self._batches = 0
+    def __init__(self, folder: Path, run: str, schema: TableSchema, allowed: Check) -> None:
+        """Open a run's folder, which need not exist yet; `allowed` as for `Parts`."""
+        self._run, self._schema = run, schema
+        self._parts = Parts(folder, schema.arrow, _REMEDY, self._objection, allowed)
+        self._batches = 0  # read or flushed
         self._pending: list[Evaluations] = []
         self._waiting = 0
 
     def replay(self) -> Iterator[Evaluations]:
-        """Yield the logged batches in order, and make ready to append after the last.
+        """Yield the logged batches in order, and make ready to append after the last; forget what is not on disk.
 
         Raises:
             StoreError: A part is damaged, missing or not this run's.
         """
-        self._batches = 0
+        self._pending, self._waiting = [], 0
         for table in self._parts.read():
-            batches = table["batch"].to_numpy()
-            starts = np.flatnonzero(np.diff(batches, prepend=batches[0] - 1))
             whole = self._schema.evaluations(table)
-            for begin, end in pairwise([*starts.tolist(), len(batches)]):
-                if batches[begin] != self._batches:
-                    raise StoreError(f"{self._folder}: batch {self._batches} is missing; {_REMEDY}")
-                self._batches += 1
+            for begin, end in pairwise([*_starts(table["batch"].to_numpy()).tolist(), table.num_rows]):
                 yield whole.part(begin, end)
 
     def append(self, evaluations: Evaluations) -> None:
@@ -69,7 +65,7 @@ class RunLog:
         self._parts.flush()
 
     def read(self) -> Iterator[pa.Table]:
-        """Yield the parts in order: what to use where a log may be long.
+        """Yield the parts in order, checked: what to use where a log may be long.
 
         Raises:
             StoreError: A part is damaged, missing or not this run's.
@@ -83,3 +79,19 @@ class RunLog:
             StoreError: A part is damaged, missing or not this run's.
         """
         return self._parts.table()
+
+    def _objection(self, table: pa.Table, first: int) -> str | None:
+        """Say what a part, whose first row is given, holds that this run cannot have logged there."""
+        self._batches = 0 if first == 0 else self._batches
+        batches = table["batch"].to_numpy()
+        found = batches[_starts(batches)]
+        expected = np.arange(self._batches, self._batches + len(found))
+        if (found != expected).any():
+            return f"batch {expected[(found != expected).argmax()]} is missing"
+        self._batches += len(found)
+        return self._schema.log_objection(table, self._run, first)
+
+
+def _starts(batches: NDArray[np.int64]) -> NDArray[np.int64]:
+    """First rows of the batches."""
+    return np.flatnonzero(np.diff(batches, prepend=batches[0] - 1))

@@ -20,11 +20,13 @@ other columns in a log or a front, another meaning of a column, another quantity
 release share the number. Version 2: fronts say which points were verified.
 """
 
-VERIFIED = (
-    "yes: simulated again by the model's reference, every objective's deviation within the campaign's tolerance and "
-    "the outcome the same (constraints are not compared); deviates: simulated again and not so; no: not simulated "
-    "again"
-)
+VERIFIED = {
+    "yes": "simulated again by the model's reference, every objective's deviation within the campaign's tolerance "
+    "and the outcome the same (constraints are not compared)",
+    "deviates": "simulated again and not so",
+    "no": "not simulated again",
+}
+"""What the words in a front's `verified` mean."""
 
 DEVIATION_FLOOR = 0.01
 """Of a quantity's scale: below it a reference value divides no deviation, since an objective may be zero."""
@@ -99,7 +101,8 @@ class TableSchema:
     @property
     def front(self) -> pa.Schema:
         """A front's columns: the results, and whether simulating the design again gave the same."""
-        fields = [_text("verified", Role.VERIFICATION, VERIFIED)]
+        meaning = "; ".join(f"{word}: {says}" for word, says in VERIFIED.items())
+        fields = [_text("verified", Role.VERIFICATION, meaning)]
         fields += [_number(deviation_of(name), "", "", DEVIATION, Role.VERIFICATION) for name in self.objectives]
         return pa.schema([*self.results, *fields], metadata=self.arrow.metadata)
 
@@ -124,6 +127,30 @@ class TableSchema:
         columns |= _columns(self.quantities, evaluations.quantities)
         arrays = [pa.array(columns[f.name], _given_type(f), from_pandas=True).cast(f.type) for f in schema]
         return pa.Table.from_arrays(arrays, schema=schema)
+
+    def objection(self, table: pa.Table) -> str | None:
+        """Say what a table of results holds that no simulation gives; None where nothing."""
+        unknown = set(table["outcome"].unique().to_pylist()) - set(Outcome)
+        if unknown:
+            return f"an outcome {min(unknown)!r}, which this program does not know"
+        wrong = ~np.isfinite(_matrix(table, self.variables)).all(axis=1)
+        if wrong.any():
+            return f"{table['design_id'][int(wrong.argmax())]} has a variable that is no number"
+        return None
+
+    def log_objection(self, table: pa.Table, run: str, first: int) -> str | None:
+        """Say what is wrong with rows of a run's log, whose first is given; None where nothing."""
+        ids = pa.chunked_array([[f"{run}/{i}" for i in range(first, first + table.num_rows)]])
+        if not table["design_id"].equals(ids) or table["run"].unique().to_pylist() != [run]:
+            return f"not the evaluations from {run}/{first} on"
+        return self.objection(table)
+
+    def front_objection(self, table: pa.Table) -> str | None:
+        """Say what a front holds that cannot be; None where nothing."""
+        unknown = set(table["verified"].unique().to_pylist()) - set(VERIFIED)
+        if unknown:
+            return f"`verified` is {min(map(str, unknown))!r}, not one of {', '.join(VERIFIED)}"
+        return self.objection(table)
 
     def evaluations(self, table: pa.Table) -> Evaluations:
         """Read rows back, bit for bit; null becomes NaN."""
@@ -194,9 +221,6 @@ def _given_type(field: pa.Field) -> pa.DataType:
 def _verdicts(table: pa.Table) -> list[Verdict]:
     """Read the verdicts, equal ones as one object: there are few."""
     outcomes, texts = (table[name].combine_chunks().dictionary_encode() for name in ("outcome", "outcome_text"))
-    for outcome in outcomes.dictionary.to_pylist():
-        if outcome not in set(Outcome):
-            raise StoreError(f"the log has an outcome {outcome!r}, which this program does not know; restore it")
     words = len(texts.dictionary)
     codes, places = np.unique(
         outcomes.indices.to_numpy().astype(np.int64) * words + texts.indices.to_numpy(), return_inverse=True

@@ -1,30 +1,48 @@
 """A campaign's folder: the campaign as resolved, the runs' logs, the fronts, the report."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pyarrow as pa
 from filelock import FileLock, Timeout
 
-from divideropt.errors import StoreError, StoreInUseError, UsageError
-from divideropt.store.files import disk_errors, publish
+from divideropt.errors import DamagedFileError, StoreError, StoreInUseError, UsageError
+from divideropt.store.files import (
+    check_links,
+    clear_temporaries,
+    disk_errors,
+    make_folder,
+    publish,
+    publish_folder,
+)
+from divideropt.store.fingerprint import keep_fingerprint
 from divideropt.store.log import RunLog
+from divideropt.store.owner import Owner, holder
 from divideropt.store.parts import Parts
 from divideropt.store.schema import TableSchema
-from divideropt.store.tables import read_table, write_table
+from divideropt.store.tables import check_replaceable, read_table, write_table
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
 
 
+_DIGEST = "# written by divideropt, which refuses it where it was changed; sha256: "
+
+
 class Store:
-    """The files of one campaign, see the layout in the design."""
+    """The files of one campaign, see the layout in the design.
+
+    While it is held for writing it knows its owner, also in other processes to which it is handed: they publish for
+    that owner, as long as it holds the store.
+    """
 
     def __init__(self, folder: Path) -> None:
         """Name the folder; nothing is read or made yet."""
         self.folder = folder
+        self._owner: Owner | None = None
 
     @property
     def campaign_path(self) -> Path:
@@ -39,7 +57,7 @@ class Store:
     @property
     def has_logs(self) -> bool:
         """Whether any evaluation is logged."""
-        return any((self.folder / "evaluations").glob("*/*.parquet"))
+        return any((self.folder / "evaluations").glob("[!.]*/*.parquet"))
 
     @property
     def status_folder(self) -> Path:
@@ -61,11 +79,16 @@ class Store:
         if not self.exists:
             raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
         try:
-            return self.campaign_path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise StoreError(
-                f"{self.campaign_path}: damaged ({error}); restore it, or start anew (--fresh)"
-            ) from error
+            content = self.campaign_path.read_bytes()
+        except OSError as error:
+            raise self._campaign_damaged(str(error.strerror)) from error
+        first, _, text = content.partition(b"\n")
+        if first != _digest(text):
+            raise self._campaign_damaged("changed since it was written")
+        return text.decode("utf-8")
+
+    def _campaign_damaged(self, reason: str) -> DamagedFileError:
+        return DamagedFileError(f"{self.campaign_path}: damaged ({reason}); restore it, or start anew (--fresh)")
 
     def write_campaign(self, text: str) -> None:
         """Replace the campaign as resolved.
@@ -73,46 +96,83 @@ class Store:
         Raises:
             DiskError: The disk refused.
         """
-        with disk_errors(self.folder):
-            self.folder.mkdir(parents=True, exist_ok=True)
-        publish(self.campaign_path, lambda p: _write_text(p, text))
+        make_folder(self.folder)
+        content = text.encode("utf-8")
+        publish(self.campaign_path, lambda p: p.write_bytes(_digest(content) + b"\n" + content), self._check_owner)
 
     def write_report(self, text: str) -> Path:
         """Replace the report and return its path."""
-        publish(self.report_path, lambda p: _write_text(p, text))
+        publish(self.report_path, lambda p: p.write_text(text, encoding="utf-8"))
         return self.report_path
 
     def log(self, run: str, schema: TableSchema) -> RunLog:
-        """Open a run's log."""
-        return RunLog(self.folder / "evaluations" / run, run, schema)
+        """Open a run's log.
+
+        Raises:
+            StoreError: A file is where a folder should be.
+        """
+        return RunLog(self._part_of_store("evaluations", run), run, schema, self._check_owner)
 
     def write_front(self, name: str, table: pa.Table) -> None:
-        """Replace a front; `name` is a run's, or `combined`."""
-        write_table(self._front_path(name), table)
+        """Replace a front; `name` is a run's, or `combined`.
+
+        Raises:
+            DiskError: The disk refused; the front is as it was.
+            StoreInUseError: The store is another's now.
+        """
+        path = self._front_path(name)
+        way = publish if path.parent.exists() else publish_folder
+        write_table(path, table, lambda path, write: way(path, write, self._check_owner))
 
     def read_front(self, name: str, schema: TableSchema) -> pa.Table | None:
         """Read a front, or None if it has not been written.
 
         Raises:
-            StoreError: It is damaged, of another version, or not this campaign's.
+            DamagedFileError: It is damaged; it follows from the logs.
+            StoreError: It is of another version, or not this campaign's.
         """
         path = self._front_path(name)
-        return read_table(path, schema.front, "delete it and run the campaign again") if path.is_file() else None
+        if not path.exists():
+            return None
+        remedy = "it follows from the logs: delete it and run the campaign again"
+        table = read_table(path, schema.front, remedy)
+        objection = schema.front_objection(table)
+        if objection is not None:
+            raise DamagedFileError(f"{path}: damaged ({objection}); {remedy}")
+        return table
 
     def verification(self, schema: TableSchema) -> Parts:
         """Open the results of simulating front points again, in the order in which that was done."""
-        folder = self.folder / "verification"
-        return Parts(folder, schema.results, f"restore it, or delete {folder}, and its points are simulated again")
+        folder = self._part_of_store("verification")
+        remedy = f"restore it, or delete {folder}, and its points are simulated again"
+        return Parts(folder, schema.results, remedy, lambda table, first: schema.objection(table), self._check_owner)
 
     @contextmanager
     def writing(self) -> Iterator[None]:
-        """Hold the store for writing.
+        """Hold the store for writing: as long as this lasts, this process and those it hands the store to publish.
 
         Raises:
             StoreInUseError: Another process holds it.
+            StoreError: A file is where a folder should be, or a later version of this program wrote here.
+            DiskError: The disk refused.
         """
-        with _held(self.folder, ".lock", 0.0, "another divideropt is writing to this store"):
-            yield
+        with self._locked():
+            self._make_ready()
+            self._owner = Owner.here()
+            self._owner.claim(self._owner_path)
+            try:
+                yield
+            finally:
+                self._owner.release(self._owner_path)
+                self._owner = None
+
+    def keep_fingerprint(self) -> str | None:
+        """Keep what this process computes with; say what is other than with the last writer, None where nothing.
+
+        Raises:
+            DiskError: The disk refused.
+        """
+        return keep_fingerprint(self.folder / ".writers.json", self._check_owner)
 
     @contextmanager
     def writing_run(self, run: str) -> Iterator[None]:
@@ -121,7 +181,7 @@ class Store:
         Raises:
             StoreInUseError: Another process keeps holding it.
         """
-        with _held(self.status_folder, f"{run}.lock", LOCK_PATIENCE, f"another process is writing run {run}"):
+        with _held(self.status_folder, f"{run}.lock", LOCK_PATIENCE, lambda: f"another process is writing run {run}"):
             yield
 
     def move_aside(self) -> Path | None:
@@ -140,30 +200,66 @@ class Store:
         stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
         names = (f"{whole.name}.before-{stamp}{more}" for more in ("", *(f"-{i}" for i in range(2, 1000))))
         aside = next(path for path in map(whole.with_name, names) if not path.exists())
-        with self.writing(), disk_errors(self.folder):
+        with self._locked(), disk_errors(self.folder):
             whole.rename(aside)
         return aside
 
+    @property
+    def _owner_path(self) -> Path:
+        return self.folder / ".owner"
+
+    def _check_owner(self) -> None:
+        """Make sure that the store is still held by whom this works for; nobody asks outside of `writing`."""
+        if self._owner is not None:
+            self._owner.check(self._owner_path)
+
+    def _make_ready(self) -> None:
+        """Find what would be in the way later, and clear what killed writers left."""
+        logs = self._part_of_store("evaluations")
+        parts = [self._part_of_store(name) for name in ("fronts", "verification")]
+        self._part_of_store(self.status_folder.name)
+        runs = [self._part_of_store(logs.name, path.name) for path in logs.glob("[!.]*")]
+        for folder in (self.folder, logs, *runs, *parts):
+            clear_temporaries(folder)
+        for front in sorted(parts[0].glob("[!.]*.parquet")):
+            check_replaceable(front)
+        check_links(self.folder)
+
+    def _part_of_store(self, *names: str) -> Path:
+        """Name a folder of the store, and make sure that neither it nor one above it is a file."""
+        path = self.folder
+        for name in names:
+            path /= name
+            if path.exists() and not path.is_dir():
+                raise StoreError(f"{path}: a file where the store has a folder; move it out of the store")
+        return path
+
     def _front_path(self, name: str) -> Path:
-        return self.folder / "fronts" / f"{name}.parquet"
+        return self._part_of_store("fronts") / f"{name}.parquet"
+
+    def _locked(self) -> AbstractContextManager[None]:
+        def reason() -> str:
+            return f"another divideropt is writing to this store: {holder(self._owner_path)}"
+
+        return _held(self.folder, ".lock", 0.0, reason)
 
 
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
+def _digest(text: bytes) -> bytes:
+    return f"{_DIGEST}{hashlib.sha256(text).hexdigest()}".encode()
 
 
 @contextmanager
-def _held(folder: Path, name: str, patience: float, reason: str) -> Iterator[None]:
+def _held(folder: Path, name: str, patience: float, reason: Callable[[], str]) -> Iterator[None]:
     """Hold a lock of the kernel's, which ends with the process that has it."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder}: a file, not a folder; name another --store")
+    make_folder(folder)
     with disk_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
         lock = FileLock(folder / name, timeout=patience)
         try:
             lock.acquire()
         except Timeout:
-            raise StoreInUseError(f"{folder}: {reason}; wait until it is done, or name another --store") from None
+            raise StoreInUseError(f"{folder}: {reason()}; wait until it is done, or name another --store") from None
     try:
         yield
     finally:
