@@ -38,10 +38,15 @@ class FileMistakes(UsageError):
     """Everything wrong with one file, in the order of its lines."""
 
     def __init__(self, path: str, mistakes: list[Mistake]) -> None:
-        """Keep the mistakes, sorted by place, and word them as `file:line:column: message`."""
+        """Keep the mistakes, sorted by place, and word them as `file:line:column: message`, each on one line."""
         self.path = path
         self.mistakes = sorted(mistakes, key=lambda m: (m.line, m.column))
-        super().__init__("\n".join(f"{path}:{m.line}:{m.column}: {m.message}" for m in self.mistakes))
+        super().__init__("\n".join(f"{path}:{m.line}:{m.column}: {printable(m.message)}" for m in self.mistakes))
+
+
+def printable(text: str) -> str:
+    """Escape what is no printable character: a file's own words shall not break lines or steer a terminal."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 class StoreInUseError(DivideroptError):
