@@ -16,6 +16,7 @@ _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _FACTOR = r"(?:[A-Za-zµμ°%]{1,24}(?:\^-?[1-9])?)"
 _UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
 _MEASURE = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
+_PLAIN = re.compile(rf"\s*{_NUMBER}\s*", re.ASCII)
 _LONGEST = 80
 
 
@@ -48,6 +49,17 @@ def parse_measure(value: object, unit: str) -> float:
     if given == unit:
         return _finite(float(number))
     return _finite(float(Decimal(number) * _factor(given, unit)))
+
+
+def parse_number(text: str) -> float:
+    """Read a plain decimal number: no unit, no `1_000`, no `nan`, no digits but 0 to 9.
+
+    Raises:
+        ValueError: It is no such number, or too large for one.
+    """
+    if len(text) > _LONGEST or not _PLAIN.fullmatch(text):
+        raise ValueError(f"{text[:_LONGEST]!r} is not a number")
+    return _finite(float(text))
 
 
 def format_measure(value: float, unit: str) -> str:

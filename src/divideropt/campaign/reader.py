@@ -285,7 +285,9 @@ class _Walk:
                 self._mistake("this key is not a name; keys are names, such as `spool_radius`", place)
         elif key in made:
             first = self.keys[(*path, key)].line
-            self._mistake(f"{shortened(repr(key))} is here a second time, after line {first}; delete one of the two", place)
+            self._mistake(
+                f"{shortened(repr(key))} is here a second time, after line {first}; delete one of the two", place
+            )
         else:
             self.keys[(*path, key)] = place
             return key

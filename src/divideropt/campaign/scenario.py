@@ -5,11 +5,11 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf
-from divideropt.campaign.sections import Section, mistake
+from divideropt.campaign.sections import Section, mistake, together
 from divideropt.models import Domain
 from divideropt.models.divider.scenario import INSTANT, Event, Scenario, load_step
 
@@ -115,6 +115,16 @@ class ScenarioConfig(Section):
             accumulation_time=self.accumulation_time,
         )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _few_events(cls, raw: Any) -> Any:
+        """Refuse too many events before each is judged."""
+        events = raw.get("events") if isinstance(raw, Mapping) else None
+        if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:
+            sentence = f"the list has {len(events)} values; write at most {MOST_EVENTS}"
+            raise together([mistake(("events",), sentence)])
+        return raw
+
     @classmethod
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say which times go with which start and with each other."""
@@ -124,6 +134,8 @@ class ScenarioConfig(Section):
         if not cold and raw.get("end") is not None:
             yield mistake(("end",), "a settled start lasts its `horizon`; rename `end`", at_key=True)
         events = raw.get("events")
+        if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:  # has its own mistake
+            return
         if isinstance(events, list | tuple) and events:
             if raw.get("step") is not None:
                 sentence = "`step` and `events` both say what happens; delete one of the two"

@@ -43,9 +43,11 @@ _LINE_END = re.compile(rb"\r\n|[\n\r]")
 def _bytes(path: Path | str, most: int) -> bytes:
     """Read a file, a longer one to one byte more than `most`."""
     try:
-        with open(path, "rb", opener=_open_at_once) as file:  # noqa: PTH123 (Path.open takes no opener)
+        with open(path, "rb", opener=_open_at_once) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise UsageError(f"{path}: this is a pipe or a device; save what comes from it as a file, and name that")
+                raise UsageError(
+                    f"{path}: this is a pipe or a device; save what comes from it as a file, and name that"
+                )
             return file.read(most + 1)
     except FileNotFoundError:
         raise UsageError(f"{path}: there is no such file; check the name and the folder") from None
