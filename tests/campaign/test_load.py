@@ -349,7 +349,7 @@ def test_a_class_that_is_no_model_is_a_mistake_at_kind(spring, kind, options, re
         ("os:system", "{{command: touch {}}}"),
         ("pathlib:Path", "{{}}"),
         ("builtins:open", "{{file: {}, mode: w}}"),
-        ("builtins:exec", "{{source: 'open(\"{}\", \"w\")'}}"),
+        ("builtins:exec", '{{source: \'open("{}", "w")\'}}'),
     ],
 )
 def test_a_campaign_calls_nothing_but_models(tmp_path, kind, options):

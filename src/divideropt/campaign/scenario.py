@@ -25,6 +25,9 @@ MOST_EVENTS = 100
 """More in one scenario is a slip; each makes fifteen columns."""
 
 _DEFAULT_END = 1.0
+_BY_START = ("step", "horizon", "end")
+"""What a scenario has or has not by its start and its events."""
+
 _CHANGES = ("load", "load_pressures", "source_flow", "spool_position")
 
 
@@ -117,13 +120,15 @@ class ScenarioConfig(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _few_events(cls, raw: Any) -> Any:
-        """Refuse too many events before each is judged."""
-        events = raw.get("events") if isinstance(raw, Mapping) else None
+    def _prepared(cls, raw: Any) -> Any:
+        """Refuse too many events before each is judged, and take an explicit null for what is not given."""
+        if not isinstance(raw, Mapping):
+            return raw
+        events = raw.get("events")
         if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:
             sentence = f"the list has {len(events)} values; write at most {MOST_EVENTS}"
             raise together([mistake(("events",), sentence)])
-        return raw
+        return {key: value for key, value in raw.items() if value is not None or key not in _BY_START}
 
     @classmethod
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
