@@ -106,9 +106,9 @@ def test_an_empty_file_is_said_to_be_empty(tmp_path, content):
     ids=["repeated", "columns", "cells", "rows", "blank", "quotes"],
 )
 def test_a_hostile_table_is_refused_at_once(tmp_path, text):
-    begin = time.perf_counter()
+    begin = time.process_time()
     places, said = refused(tmp_path, text)
-    assert time.perf_counter() - begin < 2
+    assert time.process_time() - begin < 2
     assert len(places) <= MOST_MISTAKES + 1
     assert len(said) < 100_000
 
@@ -117,10 +117,10 @@ def test_a_table_too_large_is_not_read(tmp_path):
     path = tmp_path / "d.csv"
     with path.open("wb") as file:
         file.truncate(2**31)
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(UsageError, match=f"larger than {LARGEST_FILE >> 20} MiB, the most a table of designs"):
         read_designs(path, PARAMETERS)
-    assert time.perf_counter() - begin < 2
+    assert time.process_time() - begin < 2
 
 
 def test_a_pipe_is_not_waited_for(tmp_path):

@@ -18,6 +18,7 @@ from divideropt.errors import FileMistakes, UsageError
 ROOT = Path(__file__).parents[2]
 QUICKSTART = (ROOT / "campaigns" / "quickstart.yaml").read_text("utf-8")
 MOST_SECONDS = 2.0
+"""Of the processor's time: what else the machine does shall not fail a test."""
 
 
 def _fuzz():
@@ -103,10 +104,10 @@ HOSTILE = {
 @pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
 def test_a_hostile_file_is_refused_at_once_and_briefly(text):
     assert len(text) <= LARGEST_FILE
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(UsageError) as caught:
         parse_campaign(text)
-    assert time.perf_counter() - begin < MOST_SECONDS
+    assert time.process_time() - begin < MOST_SECONDS
     said = str(caught.value)
     assert all(line.isprintable() and len(line) < 600 for line in said.split("\n"))
     assert said.count("\n") <= MOST_MISTAKES
