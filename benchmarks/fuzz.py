@@ -39,8 +39,8 @@ NUMBERS = (0, 1, -1, 2, 40, 1e-3, 0.5, -0.0, 1e308, 1e-320, 2**31, 2**63, 10**30
 # fmt: off
 STRINGS = (
     "", " ", "6 mm", "1 MPa", "0.5 %", "1 1/s", "6", "1e999 m", "1e-999 m", "6^800000 m", "1 m**99", "((1)) m",
-    "1 dB", "1 degC", "\u0661 m", "1_0 mm", "nan", "../x", "con", "a" * 300, "a:b", "os:system", "\0", "\x1b[31m", "\u2028",
-    "\ud800", "\U0001f600", "e\u0301", "{{7*7}}", "</script>", "*a", "&a", "!!int", "<<", "0x1F", "1:30", "yes", "~",
+    "1 dB", "1 degC", "\u0661 m", "1_0 mm", "nan", "../x", "con", "a" * 300, "a:b", "os:system", "\0", "\x1b[31m",
+    "\u2028", "\ud800", "\U0001f600", "e\u0301", "{{7*7}}", "</script>", "*a", "&a", "!!int", "<<", "0x1F", "~",
 )
 SNIPPETS = (
     b"\t", b"&a ", b"*a", b"!!int ", b"!!python/object/apply:os.system ", b"<<: {}\n", b"\n---\n", b"{", b"}", b"[",
@@ -54,7 +54,7 @@ _UNIT = re.compile(r'such as "1 (\S+)"')
 
 @dataclass(frozen=True)
 class Judgement:
-    """What became of a file: the exit code of `check`, its words, the processor time it took [s], and a bug's traceback."""
+    """What became of a file: exit code and words of `check`, the processor time it took [s], a bug's traceback."""
 
     code: int
     words: str
@@ -244,7 +244,8 @@ def _number(schema: dict[str, Any], random: Random) -> float:
     upper: float = schema.get("maximum", schema.get("exclusiveMaximum", lower + 10))
     if "integer" in schema.get("type", ()):
         return random.choice((lower, random.randint(int(lower), int(min(upper, lower + 20))), upper))
-    return random.choice((*[random.uniform(lower, upper)] * 5, 10.0 ** random.uniform(-9, 9), lower)) * 1.0
+    drawn = [random.uniform(lower, upper)] * 5
+    return random.choice([*drawn, float(10.0 ** random.uniform(-9, 9)), lower])
 
 
 def _change(data: Any, random: Random) -> None:
