@@ -1,5 +1,6 @@
 """The shipped campaigns, files that are no campaign, the way back to text, and the schema."""
 
+import json
 import pickle
 import sys
 import time
@@ -430,3 +431,84 @@ def test_the_schema_names_and_describes_everything():
     for section in ("variables", "objectives", "constraints", "reference_point", "strategies"):
         assert all(entry["description"] for entry in properties[section]["properties"].values())
     assert "in m " in properties["variables"]["properties"]["spool_radius"]["description"]
+
+
+EVENT = {"at": "10 ms", "load": 1, "to": "12 MPa", "load_pressures": ["1 MPa", "2 MPa"], "source_flow": "1 L/min"}
+SCENARIO = {"start": "cold", "horizon": "2 s", "end": "2 s", "step": {"load": 1}, "accumulation_time": "0.1 s"}
+
+
+def some_of(fields):
+    """Each field as it is, null, or left out; the null that no field permits is that of `start`."""
+    chosen = {name: st.sampled_from([value, None, ...]) for name, value in fields.items()}
+    kept = st.fixed_dictionaries(chosen).map(lambda made: {k: v for k, v in made.items() if v is not ...})
+    return kept.filter(
+        lambda made: made.get("start", "") is not None and made.get("accumulation_time", "") is not None
+    )
+
+
+@settings(max_examples=300)
+@given(scenario=some_of(SCENARIO), at=st.sampled_from([None, "10 ms"]), events=st.lists(some_of(EVENT), max_size=1))
+def test_the_schema_takes_a_scenario_that_the_loader_takes_and_no_other(scenario, at, events):
+    if scenario.get("step") and at:
+        scenario = {**scenario, "step": {"load": 1, "at": at}}
+    if events:
+        scenario = {**scenario, "events": events}
+    data = {**read_text(QUICKSTART).data, "model": {"kind": "divider", "scenario": scenario}}
+    try:
+        parse_campaign(json.dumps(data))
+    except FileMistakes as error:
+        untimed = scenario.get("start") == "cold" and events and events[0].get("at") is None
+        assert untimed or not SCHEMA.is_valid(data), str(error)  # of the events' times a schema knows nothing
+    else:
+        SCHEMA.validate(data)
+
+
+MEASURES = [
+    "6 mm",
+    "6",
+    " 6.mm ",
+    "+.5e-3 m^3/s",
+    "1 1/s",
+    "6 m m",
+    "6^800000 m",
+    "1 m**9",
+    "1 (m)",
+    "1_0 mm",
+    "nan",
+    "",
+]
+MEASURES += [
+    "\u0661 m",
+    "6 m^10",
+    "1 m^-9",
+    "6 m*m*m*m*m*m",
+    "6 m*m*m*m*m*m*m",
+    "6 " + "m" * 24,
+    "6 " + "m" * 25,
+    "0.5 %",
+]
+MEASURES += [
+    "1" * 77 + " m",
+    "1" * 79 + " m",
+    "1e999 m",
+    "1e9999 m",
+    "6 mm\n",
+    "6 \u00b5m",
+    "6 m;m",
+    "0x6 m",
+    "'6 mm'",
+]
+
+
+@pytest.mark.parametrize("text", MEASURES)
+def test_the_schema_knows_the_grammar_of_measures(text):
+    """What it takes for a length fails by its unit or its size, if at all; what it refuses does not reach pint."""
+    data = read_text(QUICKSTART).data
+    data["variables"]["spool_radius"][0] = text
+    try:
+        parse_campaign(json.dumps(data))
+    except FileMistakes as error:
+        ungrammatical = "is not a number with a unit" in str(error) or "has no unit" in str(error)
+        assert SCHEMA.is_valid(data) != ungrammatical, str(error)
+    else:
+        SCHEMA.validate(data)

@@ -5,9 +5,10 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
+from divideropt.campaign import schemas
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf
 from divideropt.campaign.sections import Section, mistake, together
 from divideropt.models import Domain
@@ -45,6 +46,8 @@ class StepConfig(Section):
 class EventConfig(Section):
     """Inputs change, at once or evenly over a time."""
 
+    model_config = ConfigDict(json_schema_extra=schemas.event_rules(_CHANGES))
+
     at: Instant | None = None
     """When it begins; the first event of a settled start does so at 0 where not given."""
     over: Instant = 0.0
@@ -81,6 +84,8 @@ class EventConfig(Section):
 
 class ScenarioConfig(Section):
     """What happens to the valve (section 3.1 of the thesis)."""
+
+    model_config = ConfigDict(json_schema_extra=schemas.scenario_rules())
 
     source_flow: Flow = 1e-3
     """Qs; the load orifices are sized for half of it."""
