@@ -49,6 +49,24 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
+LONGEST_WORDS = 200
+"""Characters of what a file, a library or a model has to say, within a sentence of ours."""
+
+
+def shortened(text: str) -> str:
+    """Cut what somebody else has to say to what fits into a sentence."""
+    return text if len(text) <= LONGEST_WORDS else f"{text[:LONGEST_WORDS]}…"
+
+
+def words_of(error: BaseException) -> str:
+    """Word an exception of somebody else's code in one line: its class, and what it says if it says anything."""
+    try:
+        text = " ".join(str(error).split())
+    except Exception:  # an exception's own `__str__` may raise
+        text = ""
+    return shortened(": ".join(filter(None, [type(error).__name__, text])))
+
+
 class StoreInUseError(DivideroptError):
     """Another process is writing to this store."""
 

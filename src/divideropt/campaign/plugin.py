@@ -9,9 +9,8 @@ from typing import Annotated, Any, cast
 from pydantic import Field, PlainValidator
 
 from divideropt.campaign.fields import Tables, by_name, measure_of
-from divideropt.campaign.reader import LONGEST_NAME, shortened
 from divideropt.campaign.sections import Section, show
-from divideropt.errors import UsageError
+from divideropt.errors import LONGEST_WORDS, UsageError, words_of
 from divideropt.models import Model, Parameter, Quantity
 
 LONGEST_TEXT = 1000
@@ -34,8 +33,8 @@ def load_plugin(kind: str, options: Mapping[str, Any]) -> Model:
     module, _, name = kind.partition(":")
     if not all(part.isidentifier() for part in (*module.split("."), name)):
         raise UsageError(f"{show(kind)} names no class; write package.module:Class")
-    if len(kind) > LONGEST_NAME:
-        raise UsageError(f"{show(kind)} has {len(kind)} characters, the most permitted are {LONGEST_NAME}")
+    if len(kind) > LONGEST_WORDS:
+        raise UsageError(f"{show(kind)} has {len(kind)} characters, the most permitted are {LONGEST_WORDS}")
     try:
         with redirect_stdout(sys.stderr):
             made = getattr(importlib.import_module(module), name, None)
@@ -61,15 +60,6 @@ def load_plugin(kind: str, options: Mapping[str, Any]) -> Model:
     for what, entries, entry in (("parameter", parameters, Parameter), ("quantity", quantities, Quantity)):
         _check_entries(kind, what, entries, entry)
     return model
-
-
-def words_of(error: BaseException) -> str:
-    """Word an exception of somebody else's code in one line: its class, and what it says if it says anything."""
-    try:
-        text = " ".join(str(error).split())
-    except Exception:  # an exception's own `__str__` may raise
-        text = ""
-    return shortened(": ".join(filter(None, [type(error).__name__, text])))
 
 
 def _check_entries(kind: str, what: str, entries: Mapping[Any, object], wanted: type) -> None:

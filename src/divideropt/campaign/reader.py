@@ -27,7 +27,7 @@ from ruamel.yaml.events import (
 from ruamel.yaml.reader import ReaderError
 
 from divideropt.campaign.textfile import read_text_file
-from divideropt.errors import FileMistakes, Mistake, UsageError
+from divideropt.errors import FileMistakes, Mistake, UsageError, shortened
 
 KeyPath = tuple[str | int, ...]
 """Where a value is in the data: keys of mappings, indices of lists."""
@@ -170,11 +170,6 @@ def _syntax_mistake(error: YAMLError, text: str, here: Place) -> Mistake:
     if "\\t" in problem:
         problem = "a tab cannot indent or begin a value in YAML; use spaces"
     return Mistake(place.line, place.column, f"this is not YAML: {shortened(problem)}")
-
-
-def shortened(text: str) -> str:
-    """Cut what a file, a library or a model has to say to what fits into a sentence."""
-    return text if len(text) <= LONGEST_NAME else f"{text[:LONGEST_NAME]}…"
 
 
 def _place(mark: Any) -> Place:
