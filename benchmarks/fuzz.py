@@ -258,8 +258,7 @@ def _change(data: Any, random: Random) -> None:
         ("nudge", "nudge", "replace", "replace", "delete", "rename", "deepen", "lengthen", "exchange")
     )
     if edit == "nudge":
-        text = re.sub(r"\d+", lambda m: str(max(0, int(m[0]) + random.randint(-1, 2))), str(inside[key]), count=1)
-        inside[key] = text if isinstance(inside[key], str) else read_text(f"a: {text}").data["a"]  # type: ignore[index]
+        inside[key] = _nudged(inside[key], random)
     elif edit == "replace":
         inside[key] = random.choice((*NUMBERS, *STRINGS, None, True, False, [], {}, float("inf"), float("nan")))
     elif edit == "delete":
@@ -275,6 +274,13 @@ def _change(data: Any, random: Random) -> None:
         other, name = random.choice(places)
         if key in _keys(inside) and name in _keys(other):
             inside[key] = json.loads(json.dumps(other[name]))
+
+
+def _nudged(value: Any, random: Random) -> Any:
+    """Change the first number in a value a little."""
+    if isinstance(value, str):
+        return re.sub(r"[0-9]+", lambda m: str(max(0, int(m[0]) + random.randint(-1, 2))), value, count=1)
+    return value if isinstance(value, bool | dict | list | None) else value + random.choice((-1, 1, 0.5 * value))
 
 
 def _places(data: Any) -> list[tuple[Any, Any]]:
