@@ -38,10 +38,33 @@ class FileMistakes(UsageError):
     """Everything wrong with one file, in the order of its lines."""
 
     def __init__(self, path: str, mistakes: list[Mistake]) -> None:
-        """Keep the mistakes, sorted by place, and word them as `file:line:column: message`."""
+        """Keep the mistakes, sorted by place, and word them as `file:line:column: message`, each on one line."""
         self.path = path
         self.mistakes = sorted(mistakes, key=lambda m: (m.line, m.column))
-        super().__init__("\n".join(f"{path}:{m.line}:{m.column}: {m.message}" for m in self.mistakes))
+        super().__init__("\n".join(f"{path}:{m.line}:{m.column}: {printable(m.message)}" for m in self.mistakes))
+
+
+def printable(text: str) -> str:
+    """Escape what is no printable character: a file's own words shall not break lines or steer a terminal."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+LONGEST_WORDS = 200
+"""Characters of what a file, a library or a model has to say, within a sentence of ours."""
+
+
+def shortened(text: str) -> str:
+    """Cut what somebody else has to say to what fits into a sentence."""
+    return text if len(text) <= LONGEST_WORDS else f"{text[:LONGEST_WORDS]}…"
+
+
+def words_of(error: BaseException) -> str:
+    """Word an exception of somebody else's code in one line: its class, and what it says if it says anything."""
+    try:
+        text = " ".join(str(error).split())
+    except Exception:  # an exception's own `__str__` may raise
+        text = ""
+    return shortened(": ".join(filter(None, [type(error).__name__, text])))
 
 
 class StoreInUseError(DivideroptError):

@@ -12,11 +12,18 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+"""Pattern of a plain decimal number."""
+
 _FACTOR = r"(?:[A-Za-zµμ°%]{1,24}(?:\^-?[1-9])?)"
-_UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
-_MEASURE = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
-_LONGEST = 80
+UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
+"""Pattern of a unit: at most six factors, each with at most one digit of power, no parentheses, no numbers."""
+
+LONGEST = 80
+"""Characters of a measure."""
+
+_MEASURE = re.compile(rf"\s*({NUMBER})\s*({UNIT})?\s*", re.ASCII)
+_PLAIN = re.compile(rf"\s*{NUMBER}\s*", re.ASCII)
 
 
 def parse_measure(value: object, unit: str) -> float:
@@ -39,15 +46,26 @@ def parse_measure(value: object, unit: str) -> float:
         value = str(value)  # which may be too large for a float
     if isinstance(value, float):
         return _bare(value, unit)
-    match = _MEASURE.fullmatch(value) if len(value) <= _LONGEST else None
+    match = _MEASURE.fullmatch(value) if len(value) <= LONGEST else None
     if match is None:
-        raise ValueError(f"{value[:_LONGEST]!r} is not {_wanted(unit)}")
+        raise ValueError(f"{value[:LONGEST]!r} is not {_wanted(unit)}")
     number, given = match[1], match[2]
     if given is None:
         return _bare(float(number), unit)
     if given == unit:
         return _finite(float(number))
     return _finite(float(Decimal(number) * _factor(given, unit)))
+
+
+def parse_number(text: str) -> float:
+    """Read a plain decimal number: no unit, no `1_000`, no `nan`, no digits but 0 to 9.
+
+    Raises:
+        ValueError: It is no such number, or too large for one.
+    """
+    if len(text) > LONGEST or not _PLAIN.fullmatch(text):
+        raise ValueError(f"{text[:LONGEST]!r} is not a number")
+    return _finite(float(text))
 
 
 def format_measure(value: float, unit: str) -> str:

@@ -220,7 +220,7 @@ def test_a_file_one_may_not_read(tmp_path, monkeypatch):
     def refuse(*_args, **_kwargs):
         raise PermissionError
 
-    monkeypatch.setattr("pathlib.Path.open", refuse)
+    monkeypatch.setattr("os.open", refuse)
     with pytest.raises(UsageError, match="not permitted"):
         read_document(tmp_path / "c.yaml")
 

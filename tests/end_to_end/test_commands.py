@@ -191,6 +191,7 @@ def _stdout(done):
         ("", ["the file is empty"]),
         ('spool_radius,design_id\n0.009,"unclosed\n0.010,b\n', ["d.csv", "unexpected end of data"]),
         ("spool_radius\n0.008\n\n0.009\n", ["d.csv:3:1:", "empty"]),
+        ("\nspool_radius\n0.008\n", ["d.csv:1:1:", "blank", "name the columns"]),
     ],
 )
 def test_a_bad_table_of_designs_is_refused_with_every_place(tmp_path, monkeypatch, capsys, text, places):
@@ -229,7 +230,7 @@ def test_simulate_gives_a_table_or_a_picture(tmp_path):
         (["status", "."], "no store there"),
         (["verify", "."], "no store there"),
         (["report", "nowhere"], "no store there"),
-        (["evaluate", "nowhere.csv"], "readable CSV file"),
+        (["evaluate", "nowhere.csv"], "no such file"),
         (["frobnicate"], "No such command"),
         (["evaluate", "d.csv", "--out", "d.csv"], "the file to be read"),
         (["evaluate", "d.csv", "--out", "nowhere/o.csv"], "no folder nowhere"),

@@ -66,3 +66,28 @@ def test_linear_algebra_runs_on_one_thread_and_is_let_go_afterwards():
         pytest.skip("no BLAS here whose threads can be counted")
     assert set(seen) == {1}
     assert set(after) == {2}
+
+
+class Wordless(Exception):
+    def __str__(self):
+        raise RuntimeError("no words")
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (ValueError("one\nand\r\n  two"), "ValueError: one and two"),
+        (Wordless(), "Wordless"),
+        (KeyError(), "KeyError"),
+        (RuntimeError("x" * 1000), "RuntimeError: " + "x" * 186 + "…"),
+    ],
+)
+def test_what_a_model_breaks_down_with_is_said_in_one_line(error, words):
+    class Breaking(Toy):
+        def evaluate(self, designs):
+            raise error
+
+    model = Breaking()
+    fixed = {name: p.default for name, p in model.parameters.items()}
+    _, verdicts = simulate(model, fixed, ["x1"], np.array([[0.5], [0.6]]))
+    assert [v.text for v in verdicts] == [f"the model broke down: {words}"] * 2

@@ -1,14 +1,19 @@
 """Small stores, made once: of the divider, and of an analytic model of any number of objectives."""
 
 import io
+import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
+from browsing import PATIENCE, Opened
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError
@@ -101,3 +106,47 @@ parallel: {{backend: sequential}}
         return run_campaign(text, tmp_path / "spheres")
 
     return make
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
+        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
+    if path is None:
+        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
+    with sync_playwright() as playwright:
+        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = playwright.chromium.launch(executable_path=path, args=args)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
+    """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
+    folder = tmp_path_factory.mktemp("pages")
+
+    def open_page(text: str, script: str = "") -> Opened:
+        path = folder / f"{len(list(folder.iterdir()))}.html"
+        path.write_text(text, encoding="utf-8")
+        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
+        found.page.set_default_timeout(PATIENCE)
+        found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
+        found.page.on("pageerror", lambda error: found.errors.append(str(error)))
+
+        def hold(route: Any) -> None:
+            if route.request.url == path.as_uri():
+                route.continue_()
+            else:
+                found.requests.append(route.request.url)
+                route.abort()
+
+        found.page.route("**/*", hold)
+        if script:
+            found.page.add_init_script(script)
+        found.page.goto(path.as_uri())
+        found.page.wait_for_selector("html[data-drawn]")
+        return found
+
+    return open_page

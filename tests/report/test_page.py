@@ -1,16 +1,13 @@
 """The page in a browser: what is drawn, what a selection changes, and that nothing leaves the page."""
 
 import base64
-import os
-import shutil
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
 
+from browsing import NO_WEBGL, Opened, quiet
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.simulate import simulate
 from divideropt.report import Curve, ResponseCurves, response_page, write_response
@@ -19,15 +16,6 @@ from divideropt.report.page import render_report
 
 HOSTILE = "</script><script>window.hacked=1</script>"
 LINK = '<a href="https://example.org/">here</a>'
-
-PATIENCE = 90_000
-"""How long a page may take [ms]: without a graphics card, on a busy machine, WebGL alone takes ten seconds."""
-
-NO_WEBGL = """const old = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-    return String(kind).includes("webgl") ? null : old.call(this, kind, ...more);
-};"""
-"""Makes a browser that lacks it, and is faster than one that computes it."""
 
 COUNT_COLOURS = """async (png) => {
     const image = new Image();
@@ -43,88 +31,14 @@ COUNT_COLOURS = """async (png) => {
 """How many colours a screenshot has; the browser knows PNG."""
 
 
-@dataclass
-class Opened:
-    """A page, and what it did that it should not."""
-
-    page: Page
-    requests: list[str] = field(default_factory=list)
-    errors: list[str] = field(default_factory=list)
-
-    def count(self, selector: str) -> int:
-        return self.page.locator(selector).count()
-
-    def lines(self) -> list[str]:
-        """Outlines of the response's lines as drawn."""
-        return self.page.eval_on_selector_all(
-            "#response .scatterlayer path.js-line", "paths => paths.map(p => p.getAttribute('d'))"
-        )
-
-    def title(self) -> str:
-        return self.page.locator("#selected-title").inner_text()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    path = shutil.which("chromium") or shutil.which("chromium-browser")
-    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
-        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
-    if path is None:
-        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
-    with sync_playwright() as playwright:
-        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=path, args=args)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
-    """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
-    folder = tmp_path_factory.mktemp("pages")
-
-    def open_page(text: str, script: str = "") -> Opened:
-        path = folder / f"{len(list(folder.iterdir()))}.html"
-        path.write_text(text, encoding="utf-8")
-        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
-        found.page.set_default_timeout(PATIENCE)
-        found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
-        found.page.on("pageerror", lambda error: found.errors.append(str(error)))
-
-        def hold(route: Any) -> None:
-            if route.request.url == path.as_uri():
-                route.continue_()
-            else:
-                found.requests.append(route.request.url)
-                route.abort()
-
-        found.page.route("**/*", hold)
-        if script:
-            found.page.add_init_script(script)
-        found.page.goto(path.as_uri())
-        found.page.wait_for_selector("html[data-drawn]")
-        return found
-
-    return open_page
-
-
 @pytest.fixture(scope="module")
 def report(opened: Callable[..., Opened], data: ReportData) -> Opened:
     return opened(render_report(data))
 
 
-def _quiet(found: Opened) -> None:
-    assert found.requests == []
-    assert found.errors == []
-    links = found.page.evaluate(
-        "[...document.querySelectorAll('[href], [src]')].map(e => e.getAttribute('href') ?? e.getAttribute('src'))"
-    )
-    assert [link for link in links if link and not link.startswith("#")] == []
-
-
 def test_nothing_leaves_the_page(report):
     report.page.wait_for_timeout(200)
-    _quiet(report)
+    quiet(report)
 
 
 def test_no_button_shares(report):
@@ -247,7 +161,7 @@ def test_a_design_without_a_response_says_so(flat, data):
     flat.page.locator("#unstored").wait_for(state="visible")
     assert len([line for line in flat.lines() if line]) == 2 * 3
     assert flat.page.locator("#choice option:checked").inner_text() == f"{name} (no response in the page)"
-    _quiet(flat)
+    quiet(flat)
 
 
 def test_without_webgl_a_sentence_stands_for_the_picture(flat, data):
@@ -255,7 +169,7 @@ def test_without_webgl_a_sentence_stands_for_the_picture(flat, data):
     assert flat.page.locator("#the-front .missing").is_visible()
     assert flat.page.locator("#coordinates .missing").is_visible()
     assert flat.count("#projection-0-1 path.point") == len(data.front) + 1
-    _quiet(flat)
+    quiet(flat)
 
 
 def test_hostile_text_stays_text(opened, data):
@@ -280,7 +194,7 @@ def test_hostile_text_stays_text(opened, data):
     assert found.page.locator("h1").inner_text() == HOSTILE
     assert found.page.locator("#campaign").inner_text() == HOSTILE
     assert found.page.title().startswith(HOSTILE)
-    _quiet(found)
+    quiet(found)
 
 
 def test_an_injected_script_does_not_run(opened):
@@ -296,7 +210,7 @@ def test_a_simulated_response_is_three_plots(opened, tmp_path: Path):
     assert found.count("#curves .cartesianlayer > .subplot") == 3
     assert found.count("#curves .scatterlayer path.js-line") == 2 + 7 + 1
     assert found.page.locator("h1").inner_text() == "Response: ok"
-    _quiet(found)
+    quiet(found)
 
 
 def _id(data: ReportData, row: int) -> str:

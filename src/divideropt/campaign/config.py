@@ -20,7 +20,10 @@ MOST_WORKERS = 256
 """Beyond it a number of workers is a slip of the finger."""
 
 _BACKENDS = {"loky": "worker processes", "sequential": "one run after the other, in this process"}
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)
+_DEVICE = r"([cC][oO][nN]|[pP][rR][nN]|[aA][uU][xX]|[nN][uU][lL]|[cC][oO][mM][0-9]|[lL][pP][tT][0-9])$"
+"""Names that Windows keeps for devices: no folder there can have one, and a store may be copied to it."""
+
+_NAME = re.compile(rf"(?!{_DEVICE})[A-Za-z0-9][A-Za-z0-9_-]{{0,63}}", re.ASCII)
 
 
 def _nonzero(goal: float) -> float:
@@ -91,7 +94,7 @@ def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAME.fullmatch(value):
         raise ValueError(
             f"{show(value)} cannot name the folder of results; use 1 to 64 of A-Z, a-z, 0-9, - and _, "
-            "a letter or digit first, in quotes if it looks like a number"
+            "a letter or digit first, in quotes if it looks like a number, and no device's name such as con"
         )
     return value
 

@@ -1,20 +1,32 @@
 """A table of designs to a table of what they do: the work of `divideropt evaluate`."""
 
 import csv
-from collections.abc import Sequence
+import io
+from array import array
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from divideropt.campaign.reader import MOST_MISTAKES
+from divideropt.campaign.sections import show
+from divideropt.campaign.textfile import read_text_file
 from divideropt.errors import FileMistakes, Mistake, UsageError
 from divideropt.models import Model, Parameter
 from divideropt.models.base import FloatArray
 from divideropt.problem import simulate
+from divideropt.units import parse_number
 
 IDENTITY = "design_id"
 """A column that is passed through as it is."""
+
+LARGEST_FILE = 64 * 2**20
+"""Bytes: some hundred thousand designs of ten columns, and more than a table for people has."""
+
+LONGEST_LINE = 100_000
+"""Characters; a design of every parameter has some thousand."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +47,8 @@ class Designs:
 def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
     """Read a CSV file whose columns are parameters by name, in the parameters' units.
 
+    Every cell is data: of `design_id` any text, a formula too, and of a parameter a plain decimal number.
+
     Args:
         path: The file.
         parameters: What may be a column.
@@ -47,29 +61,25 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
         FileMistakes: Every unknown column, empty cell and value out of its domain, with row and column.
     """
     known = {p.name: p for p in parameters}
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file, strict=True)
-            header = next(reader, [])
-            _check_header(path, header, known)
-            rows = [(reader.line_num, row or [""]) for row in reader]
-    except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}; name a readable CSV file of designs") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise UsageError(f"{path}: not a CSV file in UTF-8 ({error}); save it as one") from error
-    while rows and rows[-1][1] == [""]:
-        rows.pop()  # blank lines at the end are no designs
+    text = read_text_file(path, LARGEST_FILE, "table of designs")
+    if not text.strip():
+        raise UsageError(f"{path}: the file is empty; its first line must name the columns")
+    rows = _rows(text, str(path))
+    _, header = next(rows)
+    _check_header(path, header, known)
+    given = tuple(name for name in header if name != IDENTITY)
+    values, identities = array("d"), []
     mistakes: list[Mistake] = []
-    values = [_read_row(line, row, header, known, mistakes) for line, row in rows]
+    for line, row in rows:
+        values.extend(_read_row(line, row, header, known, mistakes))
+        identities += [cell for name, cell in zip(header, row, strict=False) if name == IDENTITY]
+        if len(mistakes) >= MOST_MISTAKES:
+            mistakes.append(Mistake(line + 1, 1, "from here on nothing was read, after so many mistakes"))
+            break
     if mistakes:
         raise FileMistakes(str(path), mistakes)
-    given = tuple(name for name in header if name != IDENTITY)
-    matrix = np.array(values, dtype=np.float64).reshape(len(values), len(given))
-    identities = None
-    if IDENTITY in header:
-        place = header.index(IDENTITY)
-        identities = tuple(row[place] for _, row in rows)
-    return Designs(given, matrix, identities)
+    matrix = np.array(values, dtype=np.float64).reshape(-1, len(given)) if given else np.empty((len(identities), 0))
+    return Designs(given, matrix, tuple(identities) if IDENTITY in header else None)
 
 
 def evaluate_designs(designs: Designs, model: Model, fixed: dict[str, float]) -> pd.DataFrame:
@@ -94,16 +104,54 @@ def evaluate_designs(designs: Designs, model: Model, fixed: dict[str, float]) ->
     return pd.concat([table, results], axis=1)
 
 
+def _rows(text: str, path: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield each row with the line where it begins; blank lines at the end are none."""
+    reader = csv.reader(_lines(text, path), strict=True)
+    blank: list[int] = []
+    while True:
+        begin = reader.line_num + 1
+        try:
+            row = next(reader, None)
+        except csv.Error as error:
+            sentence = f"the row that begins here is not CSV ({error}); mend its quotes"
+            raise FileMistakes(path, [Mistake(begin, 1, sentence)]) from None
+        if row is None:
+            return
+        if not row:
+            blank.append(begin)
+            continue
+        yield from ((line, []) for line in blank)
+        blank = []
+        yield begin, row
+
+
+def _lines(text: str, path: str) -> Iterator[str]:
+    for number, line in enumerate(io.StringIO(text, newline=""), start=1):
+        if len(line) > LONGEST_LINE:
+            sentence = f"the line has {len(line)} characters, the most permitted are {LONGEST_LINE}; break it"
+            raise FileMistakes(path, [Mistake(number, 1, sentence)])
+        yield line
+
+
 def _check_header(path: Path, header: list[str], known: dict[str, Parameter]) -> None:
     if not header:
-        raise UsageError(f"{path}: the file is empty; its first line must name the columns")
-    mistakes = []
+        raise FileMistakes(
+            str(path), [Mistake(1, 1, "the first line is blank, and must name the columns; delete it")]
+        )
+    mistakes: list[Mistake] = []
+    seen: set[str] = set()
     for column, name in enumerate(header, start=1):
-        if name in header[: column - 1]:
-            mistakes.append(Mistake(1, column, f"the column {name!r} is here a second time; delete one of the two"))
+        if len(mistakes) >= MOST_MISTAKES:
+            mistakes.append(Mistake(1, column, "from here on no column was judged, after so many mistakes"))
+            break
+        if name in seen:
+            mistakes.append(
+                Mistake(1, column, f"the column {show(name)} is here a second time; delete one of the two")
+            )
         elif name not in known and name != IDENTITY:
-            sentence = f"the column {name!r} is no parameter; use {IDENTITY}, or one of {', '.join(known)}"
+            sentence = f"the column {show(name)} is no parameter; use {IDENTITY}, or one of {', '.join(known)}"
             mistakes.append(Mistake(1, column, sentence))
+        seen.add(name)
     if mistakes:
         raise FileMistakes(str(path), mistakes)
 
@@ -111,6 +159,9 @@ def _check_header(path: Path, header: list[str], known: dict[str, Parameter]) ->
 def _read_row(
     line: int, row: list[str], header: list[str], known: dict[str, Parameter], mistakes: list[Mistake]
 ) -> list[float]:
+    if not row:
+        mistakes.append(Mistake(line, 1, "the line is empty, and not the last; delete it"))
+        return []
     if len(row) != len(header):
         sentence = f"the row has {len(row)} cells, the header {len(header)}; fill it up, or mend the quotes"
         mistakes.append(Mistake(line, 1, sentence))
@@ -118,6 +169,8 @@ def _read_row(
     numbers = []
     for column, (name, cell) in enumerate(zip(header, row, strict=True), start=1):
         if name == IDENTITY:
+            if "\0" in cell:
+                mistakes.append(Mistake(line, column, f"{IDENTITY} has the character U+0000 in it; delete it"))
             continue
         try:
             numbers.append(_read_cell(known[name], cell))
@@ -131,9 +184,9 @@ def _read_cell(parameter: Parameter, cell: str) -> float:
     if not cell.strip():
         raise ValueError(f"{parameter.name} is empty; give a number{unit}, or leave the column out altogether")
     try:
-        value = float(cell)
+        value = parse_number(cell)
     except ValueError:
-        raise ValueError(f"{parameter.name} is {cell!r}, not a number; give one{unit}") from None
+        raise ValueError(f"{parameter.name} is {show(cell)}, not a number; give one{unit}, such as 1.5e-3") from None
     if not parameter.domain.contains(value):
         raise ValueError(f"{parameter.name} is {value:g}, but must be {parameter.domain}{unit}")
     return value

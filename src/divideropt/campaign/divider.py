@@ -4,11 +4,11 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
 from divideropt.campaign import schemas
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf, Tables, by_name, measure_of
-from divideropt.campaign.scenario import ScenarioConfig
+from divideropt.campaign.scenario import MOST_EVENTS, ScenarioConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
 from divideropt.models import Domain
 from divideropt.models.divider.formulations import FORMULATIONS
@@ -28,6 +28,10 @@ _LOSSES = {"none": "as section 2.3 assumes", "entrance": "`groove_loss_factor` v
 _SCENARIO_NAME = re.compile(schemas.scenario_name(), re.ASCII)
 
 
+MOST_SCENARIOS = 50
+"""More are a slip: each simulates every design once more."""
+
+
 def divider_tables(model: object) -> Tables:
     """Return the names a campaign may use, which hang on its scenarios.
 
@@ -37,7 +41,7 @@ def divider_tables(model: object) -> Tables:
     section = model if isinstance(model, Mapping) else {}
     others = section.get("scenarios")
     named = others if isinstance(others, Mapping) else {}
-    scenarios = {BASE: section.get("scenario"), **{str(name): raw for name, raw in named.items()}}
+    scenarios = {BASE: section.get("scenario"), **{str(name): raw for name, raw in _few(named).items()}}
     return Tables(PARAMETERS, quantities_by_scenario({name: _measured(raw) for name, raw in scenarios.items()}))
 
 
@@ -47,7 +51,29 @@ def _measured(scenario: object) -> tuple[int, ...]:
         return ScenarioConfig.model_validate(scenario or {}).to_scenario().measured_events
     except ValueError:  # has its own mistakes
         events = scenario.get("events") if isinstance(scenario, Mapping) else None
-        return tuple(range(1, len(events))) if isinstance(events, list | tuple) else ()
+        return tuple(range(1, len(events[:MOST_EVENTS]))) if isinstance(events, list | tuple) else ()
+
+
+def _few(named: Mapping[str, object]) -> dict[str, object]:
+    """Return no more scenarios than there may be, and no more events: each event makes fifteen columns."""
+    left, found = MOST_EVENTS, {}
+    for name, raw in list(named.items())[:MOST_SCENARIOS]:
+        events = raw.get("events") if isinstance(raw, Mapping) else None
+        left -= len(events) if isinstance(events, list | tuple) else 1
+        if left < 0:
+            break
+        found[name] = raw
+    return found
+
+
+def _few_scenarios(scenarios: object) -> object:
+    """Refuse too many scenarios, or too many events in them together, before each is judged."""
+    if isinstance(scenarios, Mapping) and len(_few(scenarios)) < len(scenarios):
+        raise ValueError(
+            f"there are {len(scenarios)} scenarios here; write at most {MOST_SCENARIOS}, with {MOST_EVENTS} events "
+            "together"
+        )
+    return scenarios
 
 
 def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConfig]:
@@ -109,8 +135,11 @@ class DividerConfig(Section):
     """What happens to the valve."""
     scenarios: Annotated[
         Mapping[str, ScenarioConfig],
+        BeforeValidator(_few_scenarios),
         AfterValidator(_named),
-        Field(json_schema_extra={"propertyNames": {"pattern": schemas.scenario_name()}}),
+        Field(
+            json_schema_extra={"propertyNames": {"pattern": schemas.scenario_name()}, "maxProperties": MOST_SCENARIOS}
+        ),
     ] = Field(default_factory=dict)
     """What else happens to each design, by names for `worst_of`; each complete in itself."""
     solver: SolverConfig = Field(default_factory=SolverConfig)

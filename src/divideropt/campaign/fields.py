@@ -9,12 +9,13 @@ from pydantic_core import CoreSchema, core_schema
 
 from divideropt.campaign.sections import V, collect, show, unknown
 from divideropt.models import Domain, Parameter, Quantity
-from divideropt.units import format_measure, parse_measure
+from divideropt.units import LONGEST, NUMBER, UNIT, format_measure, parse_measure
 
 POSITIVE = Domain(lower=0.0, open_lower=True)
 FINITE = Domain()
 
-_PATTERN = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?\s*(1/|[A-Za-zµμ°%])"
+_BARE = rf"^\s*{NUMBER}\s*(?:{UNIT})?\s*$"
+_WITH_UNIT = rf"^\s*{NUMBER}\s*{UNIT}\s*$"
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,14 @@ class Measure:
         if not self.unit:
             return {
                 "type": ["number", "string"],
+                "pattern": _BARE,
+                "maxLength": LONGEST,
                 "description": ", ".join([*words, "without unit"]),
                 **self._limits(),
             }
         unit = f'in {self.unit} or any unit of that kind, such as "1 {self.unit}"'
-        return {"type": "string", "pattern": _PATTERN, "description": ", ".join([*words, unit])}
+        described = {"description": ", ".join([*words, unit])}
+        return {"type": "string", "pattern": _WITH_UNIT, "maxLength": LONGEST, **described}
 
     def _limits(self) -> dict[str, float]:
         lower = "exclusiveMinimum" if self.domain.open_lower else "minimum"

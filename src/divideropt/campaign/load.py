@@ -12,7 +12,7 @@ from divideropt.campaign.config import Campaign, names_plugin
 from divideropt.campaign.divider import divider_tables
 from divideropt.campaign.fields import Tables
 from divideropt.campaign.plugin import load_plugin
-from divideropt.campaign.reader import Document, KeyPath, read_document, read_text
+from divideropt.campaign.reader import MOST_MISTAKES, Document, KeyPath, read_document, read_text
 from divideropt.errors import FileMistakes, Mistake, StoreError, UsageError
 from divideropt.store import Store
 
@@ -45,9 +45,10 @@ def stored_campaign(store: Store) -> Campaign:
         UsageError: There is no store.
         StoreError: Its campaign is damaged.
     """
-    text = store.read_campaign()
+    if not store.exists:
+        store.read_campaign()  # which says so
     try:
-        return parse_campaign(text, str(store.campaign_path))
+        return load_campaign(store.campaign_path)
     except UsageError as error:
         raise StoreError(f"{error}\nThis store's campaign is damaged; restore it, or start anew (--fresh)") from error
 
@@ -77,8 +78,17 @@ def campaign_of(document: Document) -> Campaign:
         for detail in error.errors(include_url=False):
             found += _reported(document, detail)
     if found:
-        raise FileMistakes(document.path, list(dict.fromkeys(found)))
+        raise FileMistakes(document.path, _the_first(list(dict.fromkeys(found))))
     return campaign
+
+
+def _the_first(found: list[Mistake]) -> list[Mistake]:
+    """Cut a list of mistakes that nobody reads to its end, and say how many more there are."""
+    if len(found) <= MOST_MISTAKES:
+        return found
+    found = sorted(found, key=lambda m: (m.line, m.column))
+    first, last = found[:MOST_MISTAKES], found[MOST_MISTAKES]
+    return [*first, Mistake(last.line, last.column, f"from here on are {len(found) - MOST_MISTAKES} mistakes more")]
 
 
 def _tables(document: Document) -> Tables:

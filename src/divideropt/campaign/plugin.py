@@ -10,8 +10,11 @@ from pydantic import Field, PlainValidator
 
 from divideropt.campaign.fields import Tables, by_name, measure_of
 from divideropt.campaign.sections import Section, show
-from divideropt.errors import UsageError
-from divideropt.models import Model
+from divideropt.errors import LONGEST_WORDS, UsageError, words_of
+from divideropt.models import Model, Parameter, Quantity
+
+LONGEST_TEXT = 1000
+"""Characters of a name, a unit, a symbol or a description in a model."""
 
 
 def load_plugin(kind: str, options: Mapping[str, Any]) -> Model:
@@ -30,25 +33,50 @@ def load_plugin(kind: str, options: Mapping[str, Any]) -> Model:
     module, _, name = kind.partition(":")
     if not all(part.isidentifier() for part in (*module.split("."), name)):
         raise UsageError(f"{show(kind)} names no class; write package.module:Class")
+    if len(kind) > LONGEST_WORDS:
+        raise UsageError(f"{show(kind)} has {len(kind)} characters, the most permitted are {LONGEST_WORDS}")
     try:
         with redirect_stdout(sys.stderr):
-            made = getattr(importlib.import_module(module), name)
+            made = getattr(importlib.import_module(module), name, None)
     except ImportError as error:
-        raise UsageError(f"{show(kind)} cannot be imported ({error}); install it, or put it on PYTHONPATH") from None
-    except AttributeError:
-        raise UsageError(f"the module {module} has no {name!r}; check the class after the colon") from None
+        raise UsageError(
+            f"{show(kind)} cannot be imported ({words_of(error)}); install it, or put it on PYTHONPATH"
+        ) from None
     except (Exception, SystemExit) as error:  # the module is the user's own and may fail in any way
-        raise UsageError(f"importing {module} fails ({type(error).__name__}: {error}); mend it first") from error
+        raise UsageError(f"importing {module} fails ({words_of(error)}); mend it first") from error
+    if made is None:
+        raise UsageError(f"the module {module} has no {name!r}; check the class after the colon")
+    # Before anything is called: a campaign's file names the class and gives the options, and may come from anywhere.
+    if not isinstance(made, type) or not callable(getattr(made, "evaluate", None)):
+        raise UsageError(f"{show(kind)} is no model: it is not a class that has `evaluate`; name one that is")
     try:
         with redirect_stdout(sys.stderr):
             model = cast(Model, made(**options))
-        Tables(dict(model.parameters), dict(model.quantities))
+        parameters, quantities = dict(model.parameters), dict(model.quantities)
     except (Exception, SystemExit) as error:
-        reason = f"{type(error).__name__}: {error}"
         raise UsageError(
-            f"{show(kind)} makes no model ({reason}); check `options`, and that it is a Model"
+            f"{show(kind)} makes no model ({words_of(error)}); check `options`, and that it is a Model"
         ) from error
+    for what, entries, entry in (("parameter", parameters, Parameter), ("quantity", quantities, Quantity)):
+        _check_entries(kind, what, entries, entry)
     return model
+
+
+def _check_entries(kind: str, what: str, entries: Mapping[Any, object], wanted: type) -> None:
+    """Check that a model's names are names, and name what they should: they become columns and headings."""
+    if not entries:
+        raise UsageError(f"{show(kind)} has no {what}; a model has at least one")
+    for name, entry in entries.items():
+        if not isinstance(name, str) or not isinstance(entry, wanted) or getattr(entry, "name", None) != name:
+            raise UsageError(f"{show(kind)} has a {what} {show(name)} that is not a {wanted.__name__} of that name")
+        texts = (name, *(getattr(entry, field) for field in ("unit", "symbol", "description")))
+        if not all(isinstance(text, str) and len(text) <= LONGEST_TEXT and text.isprintable() for text in texts):
+            raise UsageError(
+                f"{show(kind)} has a {what} {show(name)} whose name, unit, symbol or description is not one line of "
+                f"at most {LONGEST_TEXT} printable characters"
+            )
+        if not name.strip() or name != name.strip():
+            raise UsageError(f"{show(kind)} has a {what} {show(name)}; a name has a letter, and no space around it")
 
 
 class PluginConfig(Section):

@@ -2,6 +2,7 @@
 
 A campaign needs no more of YAML 1.2 than mappings, lists and plain values. Anchors, aliases, tags, merge keys
 and further documents are refused where they stand; nothing is expanded, so no file can blow up in memory.
+The limits below are what a hostile file can cost: less than a second, and no more memory than the program itself.
 """
 
 import re
@@ -25,7 +26,8 @@ from ruamel.yaml.events import (
 )
 from ruamel.yaml.reader import ReaderError
 
-from divideropt.errors import FileMistakes, Mistake, UsageError
+from divideropt.campaign.textfile import read_text_file
+from divideropt.errors import FileMistakes, Mistake, UsageError, shortened
 
 KeyPath = tuple[str | int, ...]
 """Where a value is in the data: keys of mappings, indices of lists."""
@@ -36,8 +38,17 @@ LARGEST_FILE = 2**20
 DEEPEST = 32
 """Levels of nesting; a campaign needs five."""
 
-MOST_VALUES = 20_000
+MOST_VALUES = 10_000
 """Values and keys in a file; they bound the time a hostile file can take, to about a second."""
+
+MOST_LINES = 20_000
+"""Lines in a file; the parser takes its time over each, even over an empty one."""
+
+LONGEST_LINE = 20_000
+"""Characters in a line; the parser's time over one word grows with the square of its length."""
+
+LONGEST_NAME = 200
+"""Characters of an anchor, an alias or a tag, which are refused in any case; a longer one ends the reading."""
 
 MOST_MISTAKES = 100
 """No more are listed: who made a hundred made one of them a hundred times."""
@@ -109,11 +120,12 @@ def read_document(path: Path | str) -> Document:
         UsageError: There is no such file, or it cannot be read, is too large or empty.
         FileMistakes: It is not UTF-8 or not YAML, or reading had to stop.
     """
-    return read_text(_decode(_bytes(path), str(path)), str(path))
+    return read_text(read_text_file(path, LARGEST_FILE, "campaign"), str(path))
 
 
 def read_text(text: str, path: str = "campaign") -> Document:
     """Read YAML text; `path` names it in mistakes. Otherwise as `read_document`."""
+    _check_lines(text, path)
     walk = _Walk(text)
     try:
         document = walk.document(path)
@@ -133,40 +145,21 @@ def read_text(text: str, path: str = "campaign") -> Document:
     return document
 
 
-def _bytes(path: Path | str) -> bytes:
-    try:
-        with Path(path).open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except FileNotFoundError:
-        raise UsageError(f"{path}: there is no such file; check the name and the folder") from None
-    except IsADirectoryError:
-        raise UsageError(f"{path}: this is a folder; name the campaign's file in it") from None
-    except PermissionError:
-        raise UsageError(f"{path}: reading it is not permitted; check the file's permissions") from None
-    except OSError as error:
-        raise UsageError(f"{path}: it cannot be read ({error.strerror}); check the path") from None
-    except ValueError:
-        raise UsageError(f"{str(path)!r} cannot be the name of a file; check the path") from None
-    if len(content) > LARGEST_FILE:
-        raise UsageError(
-            f"{path}: the file is larger than 1 MiB, the most a campaign may have; is it the right file?"
-        )
-    return content
-
-
-def _decode(content: bytes, path: str) -> str:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        before = error.object[: error.start].split(b"\n")
-        message = f"the byte 0x{error.object[error.start]:02x} is not UTF-8; save the file as UTF-8"
-        column = len(before[-1].decode()) + 1
-        raise FileMistakes(path, [Mistake(len(before), column, message)]) from None
+def _check_lines(text: str, path: str) -> None:
+    """Refuse what would keep the parser busy: too many lines, or too long a one."""
+    lines = _LINE_END.split(text)
+    for number, line in enumerate(lines[:MOST_LINES], start=1):
+        if len(line) > LONGEST_LINE:
+            message = f"the line has {len(line)} characters, the most permitted are {LONGEST_LINE}; break it"
+            raise FileMistakes(path, [Mistake(number, LONGEST_LINE + 1, message)])
+    if len(lines) > MOST_LINES + 1 or (len(lines) == MOST_LINES + 1 and lines[-1]):
+        message = f"the file has more than {MOST_LINES} lines; a campaign has no use for so many"
+        raise FileMistakes(path, [Mistake(MOST_LINES + 1, 1, message)])
 
 
 def _syntax_mistake(error: YAMLError, text: str, here: Place) -> Mistake:
     if isinstance(error, ReaderError):
-        before = text[: error.position].split("\n")
+        before = _LINE_END.split(text[: error.position])
         message = f"the control character U+{ord(text[error.position]):04X} is not permitted in YAML; delete it"
         return Mistake(len(before), len(before[-1]) + 1, message)
     if not isinstance(error, MarkedYAMLError):
@@ -174,9 +167,9 @@ def _syntax_mistake(error: YAMLError, text: str, here: Place) -> Mistake:
     mark = error.problem_mark or error.context_mark
     place = _place(mark) if mark else here
     problem = " ".join(filter(None, [error.context, error.problem]))
-    if text.split("\n")[place.line - 1 : place.line] and "\\t" in problem:
+    if "\\t" in problem:
         problem = "a tab cannot indent or begin a value in YAML; use spaces"
-    return Mistake(place.line, place.column, f"this is not YAML: {problem}")
+    return Mistake(place.line, place.column, f"this is not YAML: {shortened(problem)}")
 
 
 def _place(mark: Any) -> Place:
@@ -228,6 +221,7 @@ class _Walk:
 
     def _node(self, event: Any, path: KeyPath) -> object:
         place = self.values[path] = self._stands(event, path)
+        self._check_names(event)
         if isinstance(event, AliasEvent):
             self._mistake(f"the alias *{event.anchor} is not permitted; write the value itself")
             return Broken()
@@ -242,6 +236,11 @@ class _Walk:
             self._mistake(f"the tag {event.tag} is not permitted; delete it, and write the plain value", place)
             return Broken()
         return value
+
+    def _check_names(self, event: Any) -> None:
+        for name in (event.anchor, getattr(event, "tag", None)):
+            if name is not None and len(str(name)) > LONGEST_NAME:
+                self._stop("anchors, aliases and tags are not permitted; delete this one, which is long besides")
 
     def _stands(self, event: Any, path: KeyPath) -> Place:
         """Return where a value stands; one that is left out, at its key."""
@@ -281,7 +280,9 @@ class _Walk:
                 self._mistake("this key is not a name; keys are names, such as `spool_radius`", place)
         elif key in made:
             first = self.keys[(*path, key)].line
-            self._mistake(f"{key!r} is here a second time, after line {first}; delete one of the two", place)
+            self._mistake(
+                f"{shortened(repr(key))} is here a second time, after line {first}; delete one of the two", place
+            )
         else:
             self.keys[(*path, key)] = place
             return key
@@ -290,6 +291,9 @@ class _Walk:
 
 _NAMELESS = -1
 """Stands in the path of an entry without a usable key; no list has it as index."""
+
+_LINE_END = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+"""What ends a line in YAML 1.1, and in ruamel's scanner."""
 
 _NULL = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOL = {word: word.lower() == "true" for word in ("true", "True", "TRUE", "false", "False", "FALSE")}

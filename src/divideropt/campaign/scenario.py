@@ -5,11 +5,12 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
+from divideropt.campaign import schemas
 from divideropt.campaign.fields import POSITIVE, Measure, OneOf
-from divideropt.campaign.sections import Section, mistake
+from divideropt.campaign.sections import Section, mistake, together
 from divideropt.models import Domain
 from divideropt.models.divider.scenario import INSTANT, Event, Scenario, load_step
 
@@ -25,6 +26,9 @@ MOST_EVENTS = 100
 """More in one scenario is a slip; each makes fifteen columns."""
 
 _DEFAULT_END = 1.0
+_BY_START = ("step", "horizon", "end")
+"""What a scenario has or has not by its start and its events."""
+
 _CHANGES = ("load", "load_pressures", "source_flow", "spool_position")
 
 
@@ -41,6 +45,8 @@ class StepConfig(Section):
 
 class EventConfig(Section):
     """Inputs change, at once or evenly over a time."""
+
+    model_config = ConfigDict(json_schema_extra=schemas.event_rules(_CHANGES))
 
     at: Instant | None = None
     """When it begins; the first event of a settled start does so at 0 where not given."""
@@ -79,6 +85,8 @@ class EventConfig(Section):
 class ScenarioConfig(Section):
     """What happens to the valve (section 3.1 of the thesis)."""
 
+    model_config = ConfigDict(json_schema_extra=schemas.scenario_rules())
+
     source_flow: Flow = 1e-3
     """Qs; the load orifices are sized for half of it."""
     spool_position: Position = 0.5
@@ -115,6 +123,18 @@ class ScenarioConfig(Section):
             accumulation_time=self.accumulation_time,
         )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _prepared(cls, raw: Any) -> Any:
+        """Refuse too many events before each is judged, and take an explicit null for what is not given."""
+        if not isinstance(raw, Mapping):
+            return raw
+        events = raw.get("events")
+        if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:
+            sentence = f"the list has {len(events)} values; write at most {MOST_EVENTS}"
+            raise together([mistake(("events",), sentence)])
+        return {key: value for key, value in raw.items() if value is not None or key not in _BY_START}
+
     @classmethod
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say which times go with which start and with each other."""
@@ -124,6 +144,8 @@ class ScenarioConfig(Section):
         if not cold and raw.get("end") is not None:
             yield mistake(("end",), "a settled start lasts its `horizon`; rename `end`", at_key=True)
         events = raw.get("events")
+        if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:  # has its own mistake
+            return
         if isinstance(events, list | tuple) and events:
             if raw.get("step") is not None:
                 sentence = "`step` and `events` both say what happens; delete one of the two"

@@ -1,6 +1,6 @@
 """JSON schema of the sections whose keys are the divider's parameters and quantities."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from divideropt.campaign.fields import POSITIVE, Measure, measure_of
@@ -50,6 +50,37 @@ def tolerances() -> Schema:
 def _prefixable(schema: Schema) -> Schema:
     """Let names begin with an event or a scenario, which the schema cannot know: `event_1.settling_time`."""
     return {**schema, "patternProperties": {rf"^([a-z][a-z0-9_]*\.){{1,2}}({'|'.join(QUANTITIES)})$": {}}}
+
+
+def event_rules(changes: Sequence[str]) -> Schema:
+    """What an event needs besides its fields: a change, and of a load, which and to what."""
+    both = {"allOf": [_given("load"), _given("load_pressures")]}
+    return {
+        "anyOf": [_given(name) for name in changes],
+        "allOf": [
+            {"if": _given("load"), "then": _given("to")},
+            {"if": _given("to"), "then": _given("load")},
+            {"not": both},
+        ],
+    }
+
+
+def scenario_rules() -> Schema:
+    """Which fields of a scenario go with which start and with each other."""
+    events = {"type": "object", "required": ["events"], "properties": {"events": {"minItems": 1}}}
+    timed = {"type": "object", "required": ["step"], "properties": {"step": _given("at")}}
+    cold = {"type": "object", "required": ["start"], "properties": {"start": {"const": "cold"}}}
+    return {
+        "allOf": [{"not": {"allOf": [_given("step"), events]}}],
+        "if": cold,
+        "then": {"not": _given("horizon"), "anyOf": [events, timed]},
+        "else": {"not": {"anyOf": [_given("end"), timed]}},
+    }
+
+
+def _given(name: str) -> Schema:
+    """Whether a field is there, and not null."""
+    return {"type": "object", "required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
 RESERVED_NAMES = ("worst", "least")

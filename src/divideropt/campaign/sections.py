@@ -17,6 +17,10 @@ FEW = 12
 """So many names are listed in a mistake; of more, it points to `divideropt schema`."""
 
 
+MOST_COMPARED = 500
+"""So many names are looked through for one that was meant; a model's own, without its scenarios, come first."""
+
+
 class Section(BaseModel):
     """A part of a campaign: frozen, without unknown keys, its mistakes sentences."""
 
@@ -114,7 +118,7 @@ def collect(value: object, names: Iterable[K], what: str, read: Callable[[K, obj
 def unknown(what: str, name: str, names: Iterable[str]) -> str:
     """Say that a name is not known, and which are."""
     known = list(names)
-    close = difflib.get_close_matches(name[:60], known, n=1)
+    close = difflib.get_close_matches(name[:60], known[:MOST_COMPARED], n=1)
     if close:
         return f"the {what} {show(name)} is not known; did you mean {close[0]}?"
     if len(known) > FEW:

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from divideropt.errors import words_of
 from divideropt.models.base import FloatArray, Model, Outcome, Verdict
 
 
@@ -68,7 +69,7 @@ def _guarded(model: Model, full: FloatArray) -> tuple[FloatArray, list[Verdict]]
             quantities, verdicts = model.evaluate(full)
     except Exception as error:  # a model may be anybody's
         if len(full) == 1:
-            text = f"the model broke down: {type(error).__name__}: {error}"
+            text = f"the model broke down: {words_of(error)}"
             return np.full((1, len(model.quantities)), np.nan), [Verdict(Outcome.CRASHED, text)]
         parts = [_guarded(model, row[None]) for row in full]
         return np.concatenate([q for q, _ in parts]), [v for _, verdicts in parts for v in verdicts]

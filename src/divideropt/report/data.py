@@ -131,8 +131,8 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         FileMistakes: The campaign in it cannot be read.
         StoreError: A log or a front is damaged or of a later version.
     """
-    text = store.read_campaign()
     campaign = stored_campaign(store)
+    text = store.read_campaign()
     problem, runs = build_problem(campaign), plan_runs(campaign)
     schema = TableSchema.of(problem)
     if logs is None:

@@ -49,7 +49,7 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
             style=Markup(_asset("report.css")),
             plotly=Markup(get_plotlyjs()),
             script=Markup(script),
-            scripts=" ".join(_hash(text) for text in (get_plotlyjs(), script)),
+            scripts=" ".join([*(_hash(text) for text in (get_plotlyjs(), script)), *_more_scripts(payload)]),
             payload=_embedded({"config": CONFIG, "colours": COLOURS, **payload}),
         )
     )
@@ -81,6 +81,12 @@ def _embedded(payload: Mapping[str, Any]) -> Markup:
     """Write JSON that no HTML parser sees a tag or a comment in."""
     text = json.dumps(payload, cls=PlotlyJSONEncoder, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return Markup(text.translate(_ESCAPES))
+
+
+def _more_scripts(payload: Mapping[str, Any]) -> list[str]:
+    """What else the policy must allow: regl, which draws parallel coordinates, compiles its calls by `Function()`."""
+    types = {trace.get("type") for figure in payload["figures"] for trace in figure["data"]}
+    return ["'unsafe-eval'"] if "parcoords" in types else []
 
 
 def _hash(script: str) -> str:

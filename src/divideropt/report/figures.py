@@ -114,8 +114,8 @@ def label(facts: ObjectiveFacts | VariableFacts, *, line_break: bool = False) ->
 
 
 def plain(text: str) -> str:
-    """Escape a text for plotly."""
-    return html.escape(text, quote=False)
+    """Escape a text for plotly, which reads tags in any text, and `%{…}` in the template of a hover label."""
+    return html.escape(text, quote=False).replace("%{", "%&#123;")
 
 
 def layout(height: int, margin: dict[str, int]) -> dict[str, Any]:
@@ -204,7 +204,7 @@ def _columns(designs: Sequence[Design], objectives: Sequence[ObjectiveFacts]) ->
 
 
 def _ids(designs: Sequence[Design]) -> NDArray[np.object_]:
-    return np.array([design.design_id for design in designs], dtype=object)
+    return np.array([plain(design.design_id) for design in designs], dtype=object)
 
 
 def _hover(axes: Mapping[str, ObjectiveFacts]) -> str:

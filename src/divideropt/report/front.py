@@ -1,5 +1,6 @@
 """The designs of a report, and the bounds that the front leans on."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -7,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import Verified
+from divideropt.errors import StoreError, printable
 from divideropt.models.base import FloatArray
 from divideropt.problem import AGGREGATES, DesignSpace, Problem
 from divideropt.store import TableSchema
@@ -21,6 +23,9 @@ LEAST_SHARE = 0.05
 
 VALIDITY = "within_validity"
 """The quantity by which a model says whether its assumptions hold."""
+
+
+_ID = re.compile(r"[a-z0-9_]{1,64}-[0-9]{1,20}/[0-9]{1,20}", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +87,16 @@ def designs_of(
 
     Returns:
         The best by goal attainment first; in the table's order where there are no goals.
+
+    Raises:
+        StoreError: A design is not named as ours are.
     """
     evaluations = schema.evaluations(table)
     objectives = problem.tell(evaluations).F
     attainment = _attainment(objectives, problem)
     order = range(len(objectives)) if attainment is None else np.argsort(attainment, kind="stable").tolist()
     ids, runs = table["design_id"].to_pylist(), table["run"].to_pylist()
+    _check_ids(ids)
     known = _known(table, schema)
     told = VALIDITY in table.column_names
     valid = table[VALIDITY].to_pylist() if told else [None] * table.num_rows
@@ -124,6 +133,15 @@ def leanings(designs: Sequence[Design], space: DesignSpace) -> tuple[Leaning, ..
         if on[:, i].mean() >= LEAST_SHARE
     ]
     return tuple(sorted(found, key=lambda leaning: (-leaning.share, leaning.variable, leaning.side)))
+
+
+def _check_ids(ids: Sequence[str]) -> None:
+    strange = next((name for name in ids if not _ID.fullmatch(name)), None)
+    if strange is not None:
+        raise StoreError(
+            f"a design of the store is named {printable(strange[:60])!r}, not <run>/<index>: the store is damaged; "
+            "restore it, or start anew (--fresh)"
+        )
 
 
 def _attainment(objectives: FloatArray, problem: Problem) -> FloatArray | None:

@@ -154,6 +154,8 @@
     return drawings;
   }
 
+  const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;"); // plotly reads tags
+
   function tellResponse(id) {
     const figure = shown.get("response");
     const response = report.responses[id];
@@ -163,7 +165,7 @@
     figure.data.slice(-2).forEach((trace, i) => {
       trace.x = response ? response.t : [];
       trace.y = response ? response.q[i] : [];
-      trace.name = response ? id : "no response of " + id;
+      trace.name = plain(response ? id : "no response of " + id);
     });
     if (response) {
       const range = [Math.max(response.t[0], -0.08 * response.window), response.window];
