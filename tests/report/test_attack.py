@@ -17,6 +17,7 @@ from divideropt.errors import StoreError
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
 from divideropt.report import Curve, ResponseCurves, response_page, write_report
 from divideropt.report.data import read_report
+from divideropt.report.display import Shown
 from divideropt.report.page import render_report
 
 ATTACKS = (
@@ -53,8 +54,9 @@ class Attacking:
 
     def __init__(self, word: str) -> None:
         names = [f"p{i} {ALL}" for i in range(2)]
-        self.parameters = {n: Parameter(n, ALL, ALL, ALL + word, 0.5, Domain(0.0, 1.0), ALL) for n in names}
-        self.quantities = {n: Quantity(n, ALL, ALL, ALL, 1.0, signed=True) for n in (f"q{i} {ALL}" for i in range(3))}
+        self.parameters = {n: Parameter(n, "", ALL, ALL + word, 0.5, Domain(0.0, 1.0), ALL) for n in names}
+        units = {f"q0 {ALL}": ALL, f"q1 {ALL}": "", f"q2 {ALL}": ""}  # no goal can be given in the first
+        self.quantities = {n: Quantity(n, unit, ALL, ALL, 1.0, signed=True) for n, unit in units.items()}
 
     def evaluate(self, designs):
         corners = np.eye(3)[:, :2]
@@ -70,22 +72,18 @@ def attacking(tmp_path_factory):
     module.Attacking = Attacking
     sys.modules["report_attacking"] = module
     model = Attacking("")
-    unit = f" {ALL}"
+    first, *others = model.quantities
     campaign = {
         "name": "attack",
         "model": {"kind": "report_attacking:Attacking", "options": {"word": ATTACKS[0]}},
-        "variables": {name: [f"0{unit}", f"1{unit}"] for name in model.parameters},
-        "objectives": {name: {"goal": f"0.5{unit}"} for name in model.quantities},
-        "constraints": {name: {"max": f"9{unit}"} for name in model.quantities},
-        "reference_point": dict.fromkeys(model.quantities, f"3{unit}"),
-        "strategies": {"nsga2": {"population": 20, "generations": 2}, "complex": {"evaluations": 40}},
+        "variables": {name: [0, 1] for name in model.parameters},
+        "objectives": {first: None} | {name: {"goal": 0.5} for name in others},
+        "constraints": {name: {"max": 9} for name in others},
+        "strategies": {"nsga2": {"population": 20, "generations": 2, "seeds": [1, 2]}},
         "parallel": {"backend": "sequential"},
     }
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("divideropt.campaign.fields.parse_measure", lambda value, _: float(str(value).split()[0]))
-        text = json.dumps(campaign, indent=1)
-        folder = tmp_path_factory.mktemp("attack") / "store"
-        yield Runner(parse_campaign(text), folder, 1, io.StringIO()).run().store
+    folder = tmp_path_factory.mktemp("attack") / "store"
+    yield Runner(parse_campaign(json.dumps(campaign, indent=1)), folder, 1, io.StringIO()).run().store
     del sys.modules["report_attacking"]
 
 
@@ -113,6 +111,10 @@ def test_nothing_of_an_attack_runs_or_leaves(opened, attacking):
     quiet(found)
 
 
+def _hostile(axis, text):
+    return replace(axis, name=text, words=text, symbol=text, description=text, shown=Shown(text, 1.0))
+
+
 def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
     hostile = ALL + UNPRINTABLE
     designs = tuple(replace(d, design_id=f"{hostile}{i}", strategy=hostile) for i, d in enumerate(data.front))
@@ -132,6 +134,8 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
             replace(run, name=hostile, strategy=hostile, examples=dict.fromkeys(run.outcomes, hostile))
             for run in data.runs
         ),
+        variables=tuple(replace(v, axis=_hostile(v.axis, hostile)) for v in data.variables),
+        objectives=tuple(replace(o, axis=_hostile(o.axis, hostile)) for o in data.objectives),
         best=tuple(replace(d, design_id=hostile, strategy=hostile) for d in data.best),
         setting=((hostile, hostile),),
         constraints=(hostile,),
