@@ -45,10 +45,9 @@ def stored_campaign(store: Store) -> Campaign:
         UsageError: There is no store.
         StoreError: Its campaign is damaged.
     """
-    if not store.exists:
-        store.read_campaign()  # which says so
+    text = store.read_campaign()
     try:
-        return load_campaign(store.campaign_path)
+        return parse_campaign(text, str(store.campaign_path))
     except UsageError as error:
         raise StoreError(f"{error}\nThis store's campaign is damaged; restore it, or start anew (--fresh)") from error
 

@@ -25,6 +25,9 @@ from divideropt.store.parts import Parts
 from divideropt.store.schema import TableSchema
 from divideropt.store.tables import check_replaceable, read_table, write_table
 
+LARGEST_CAMPAIGN = 2**22
+"""No campaign as resolved is larger [bytes]: a campaign's file may have a quarter of it."""
+
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
 
@@ -79,6 +82,8 @@ class Store:
         if not self.exists:
             raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
         try:
+            if self.campaign_path.stat().st_size > LARGEST_CAMPAIGN:
+                raise self._campaign_damaged(f"larger than {LARGEST_CAMPAIGN} bytes")
             content = self.campaign_path.read_bytes()
         except OSError as error:
             raise self._campaign_damaged(str(error.strerror)) from error
