@@ -129,6 +129,10 @@ class Display:
         self._over.set()
         self._thread.join()
 
+    def say(self, words: str) -> None:
+        """Print a line of its own."""
+        self._console.print(words, soft_wrap=True, markup=False)
+
     def _show(self) -> None:
         if self._console.is_terminal:
             with Live(self._table(), console=self._console, auto_refresh=False) as live:

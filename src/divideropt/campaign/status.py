@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from divideropt.analysis import hypervolume_history, summarise, tally
+from divideropt.analysis import hypervolume_history, repeatable, summarise, tally
 from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.store import Store, TableSchema
 
@@ -21,6 +22,8 @@ class RunStatus:
         best: Least max λ_i, None without a feasible design or without goals.
         best_design: The `design_id` that has it.
         hypervolume: Of the feasible designs, None without a reference point.
+        repeatable: Whether it comes out the same from scratch: no simulation timed out or crashed.
+        failure: Why it was given up, None if it was not.
     """
 
     run: str
@@ -31,6 +34,8 @@ class RunStatus:
     best: float | None
     best_design: str | None
     hypervolume: float | None
+    repeatable: bool
+    failure: str | None
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,8 @@ def read_status(store: Store) -> StoreStatus:
                 best=None if found.best is None else found.best.value,
                 best_design=None if found.best is None else found.best.design["design_id"][0].as_py(),
                 hypervolume=volumes[0] if volumes else None,
+                repeatable=repeatable(found.outcomes),
+                failure=Mishaps(store.status_folder, run.name).failure,
             )
         )
     front = store.read_front("combined", schema)
