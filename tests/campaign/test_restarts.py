@@ -1,7 +1,6 @@
 """A worker that is killed, hangs or breaks down costs its run time, and the others nothing."""
 
 import io
-import time
 from pathlib import Path
 
 import pandas as pd
@@ -14,6 +13,8 @@ from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
 from divideropt.store import Store
 
+ONE = """  nsga2: {population: 12, generations: 2, seeds: [SEEDS]}
+"""
 TEXT = """
 name: rough
 model: {kind: "rough_model:Rough", options: {OPTIONS}DEADLINE}
@@ -64,17 +65,16 @@ def test_a_worker_killed_once_costs_no_cell(calm, tmp_path):
     assert all(item.repeatable and item.failure is None for item in read_status(Store(tmp_path / "store")).runs)
 
 
-@pytest.mark.parametrize(("way", "how"), [("fault", "signal 11, SIGSEGV"), ("vanish", "exit code 7")])
-def test_a_design_that_kills_its_process_is_blamed_alone(calm, tmp_path, way, how):
-    run(tmp_path / "store", f"way: {way}")
+def test_a_design_that_kills_its_process_is_blamed_alone(calm, tmp_path):
+    run(tmp_path / "store", "way: fault, begin: 0.87, end: 0.885")
     whole = pd.concat(logs(tmp_path / "store").values())
-    bad = whole.x3.between(0.9, 0.95)
-    assert bad.sum() > 3
+    bad = whole.x3.between(0.87, 0.885)
+    assert bad.sum() >= 2
     assert (whole.outcome == "crashed").equals(bad)
-    assert whole.outcome_text[bad].str.contains("killed its process, twice").all()
-    assert whole.outcome_text[bad].str.contains(how).all()
+    assert whole.outcome_text[bad].str.fullmatch("it killed its process, twice: signal 11, SIGSEGV").all()
     assert [len(table) for table in logs(tmp_path / "store").values()] == [len(t) for t in logs(calm).values()]
-    assert not any(item.repeatable for item in read_status(Store(tmp_path / "store")).runs if "crashed" in item.outcomes)
+    marked = {item.run: not item.repeatable for item in read_status(Store(tmp_path / "store")).runs}
+    assert marked == {name: "crashed" in set(table.outcome) for name, table in logs(tmp_path / "store").items()}
 
 
 @pytest.mark.parametrize("way", ["raise", "leave"])
@@ -86,17 +86,19 @@ def test_a_design_that_breaks_down_is_blamed_alone(tmp_path, way, backend):
     assert "begun anew" not in words
 
 
-@pytest.mark.parametrize("way", ["hang", "hang_compiled", "kill"])
-@pytest.mark.parametrize(("backend", "seeds"), [("sequential", "[1]"), ("loky", "[1]"), ("loky", "[1, 2, 3]")])
+@pytest.mark.parametrize(
+    ("way", "backend", "seeds"),
+    [("hang_compiled", "sequential", "1"), ("hang", "loky", "1, 2"), ("hang", "loky", "1"), ("vanish", "loky", "1")],
+)
 def test_a_design_beyond_the_deadline_is_ended_and_blamed_alone(tmp_path, way, backend, seeds):
-    text = TEXT.replace("seeds: [1, 2]", f"seeds: {seeds}").replace("generations: 5", "generations: 2")
-    text = text.replace("  complex: {points: 6, evaluations: 60, seeds: [3]}\n", "")
-    run(tmp_path / "store", f"way: {way}, end: 0.91", backend, deadline="0.5 s", text=text)
+    text = "".join(TEXT.partition("strategies:\n")[:2]) + ONE.replace("SEEDS", seeds) + TEXT.splitlines()[-1]
+    run(tmp_path / "store", f"way: {way}, begin: 0.85, end: 0.91", backend, deadline="2 s", text=text)
     whole = pd.concat(logs(tmp_path / "store").values())
-    bad = whole.x3.between(0.9, 0.91)
-    assert (whole.outcome == ("crashed" if way == "kill" else "timed_out")).equals(bad)
-    if way != "kill":
-        assert whole.outcome_text[bad].str.contains("no result within the deadline of 0.5 s").all()
+    bad = whole.x3.between(0.85, 0.91)
+    assert bad.any()
+    assert (whole.outcome == ("crashed" if way == "vanish" else "timed_out")).equals(bad)
+    words = "exit code 7" if way == "vanish" else "no result within the deadline of 2 s"
+    assert whole.outcome_text[bad].str.contains(words).all()
 
 
 def test_a_deadline_changes_no_cell_and_may_change_in_a_store(calm, tmp_path):
@@ -106,17 +108,17 @@ def test_a_deadline_changes_no_cell_and_may_change_in_a_store(calm, tmp_path):
 
 
 def test_a_share_of_a_batch_that_kills_its_process_is_done_again_singly(tmp_path):
-    text = TEXT.replace("seeds: [1, 2]", "seeds: [1]").replace(
-        "  complex: {points: 6, evaluations: 60, seeds: [3]}\n", ""
-    )
-    run(tmp_path / "store", "way: kill", text=text)
+    text = "".join(TEXT.partition("strategies:\n")[:2]) + ONE.replace("SEEDS", "1") + TEXT.splitlines()[-1]
+    run(tmp_path / "store", "way: kill, begin: 0.85, end: 0.91", text=text)
     whole = logs(tmp_path / "store")["nsga2-1"]
-    assert (whole.outcome == "crashed").equals(whole.x3.between(0.9, 0.95))
+    assert (whole.outcome == "crashed").equals(whole.x3.between(0.85, 0.91))
     assert (whole.outcome == "crashed").any()
 
 
 @pytest.mark.parametrize("backend", ["sequential", "loky"])
-def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on(calm, tmp_path, monkeypatch, backend):
+def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on(
+    calm, tmp_path, monkeypatch, backend
+):
     work = runner.work
     attempts = []
 
@@ -143,12 +145,3 @@ def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on
     done, _ = run(tmp_path / "store", "begin: 2", backend, workers)
     assert not done.failures
     assert_same(tmp_path / "store", calm)
-
-
-def test_a_hang_does_not_keep_the_other_runs(tmp_path):
-    began = time.monotonic()
-    text = TEXT.replace("seeds: [1, 2]", "seeds: [1, 2, 4]")
-    run(tmp_path / "store", f"way: hang_compiled, once: {tmp_path / 'once'}", deadline="2 s", text=text)
-    assert time.monotonic() - began < 25
-    outcomes = pd.concat(logs(tmp_path / "store").values()).outcome.value_counts()
-    assert outcomes["timed_out"] == 1
