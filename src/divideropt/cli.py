@@ -2,7 +2,6 @@
 
 import os
 import shlex
-import signal
 import sys
 import traceback
 from contextlib import suppress
@@ -40,7 +39,6 @@ _SCENARIO = click.option("--scenario", default="scenario", metavar="NAME", help=
 
 def main() -> None:
     """Run the command and leave with its exit code."""
-    signal.signal(signal.SIGTERM, _terminated)
     try:
         code = commands.main(standalone_mode=False) or 0
     except click.ClickException as error:
@@ -277,11 +275,6 @@ def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
         return table.to_parquet(path, index=False) if out.suffix == ".parquet" else table.to_csv(path, index=False)
 
     publish(out, write)
-
-
-def _terminated(number: int, frame: object) -> None:
-    _say("divideropt: stopped by SIGTERM; nothing that was logged is lost")
-    sys.exit(128 + number)
 
 
 def _write_data(text: str) -> None:

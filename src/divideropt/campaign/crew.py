@@ -1,15 +1,19 @@
 """Worker processes, each of which may die without harm to the others: loky's, or a Dask cluster's."""
 
+import os
 import re
 import signal
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from itertools import islice
+from pathlib import Path
 from typing import Any, TypeVar
 
 from joblib.externals.loky import ProcessPoolExecutor
+from joblib.externals.loky.backend import resource_tracker
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from divideropt.campaign.mishaps import RESTARTS
@@ -81,21 +85,38 @@ class LokyCrew(Crew):
     def __init__(self, size: int) -> None:
         """Begin; a process is started when its thread first needs it."""
         super().__init__(size)
-        self._mine = threading.local()
+        _start_tracker()
+        self._mine, self._starting = threading.local(), threading.Lock()
         self._executors: list[ProcessPoolExecutor] = []
 
     def call(self, function: Callable[..., T], *arguments: object) -> T:
         """Have a function called in this thread's process; see `Crew.call`."""
         executor = getattr(self._mine, "executor", None)
         if executor is None:
-            executor = self._mine.executor = ProcessPoolExecutor(1, env=_ONE_THREAD)
-            self._executors.append(executor)
+            executor = self._mine.executor = self._started()
         try:
             result: T = executor.submit(function, *arguments).result()
         except BrokenProcessPool as error:
             self._mine.executor = None
             raise ProcessDiedError(_how(str(error))) from error
         return result
+
+    def _started(self) -> ProcessPoolExecutor:
+        """Start a process, and take the names from the semaphores it shares with this one, once it has them.
+
+        A tracker of loky's unlinks them when this process has ended, unless that is killed with its whole group.
+        """
+        with self._starting:
+            before = set(_semaphores())
+            executor = ProcessPoolExecutor(1, env=_ONE_THREAD)
+            self._executors.append(executor)
+            ready = executor.submit(os.getpid)
+            named = set(_semaphores()) - before
+        with suppress(BrokenProcessPool):  # which is heard of when the process is asked for more
+            ready.result()
+        for path in named:
+            path.unlink(missing_ok=True)
+        return executor
 
     def close(self) -> None:
         """End threads and processes."""
@@ -106,6 +127,24 @@ class LokyCrew(Crew):
 
 def _leave_signals_to_main_thread() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+
+
+def _start_tracker() -> None:
+    """Start loky's tracker of semaphores, and tell it not to complain when those are gone."""
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = "ignore"
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
+
+
+def _semaphores() -> Iterator[Path]:
+    """The named semaphores loky has made in this process, where they are files (Linux)."""
+    return Path("/dev/shm").glob(f"sem.loky-{os.getpid()}-*")
 
 
 def _how(words: str) -> str:
