@@ -21,16 +21,19 @@ class Rough(Toy):
         end: Where they end.
         once: A file; where it is given, the model fares badly only as long as it is not there, and makes it.
         pause: How long every design takes [s].
+        after: So many designs the process simulates before it fares badly with any.
     """
 
-    def __init__(self, way="kill", begin=0.9, end=0.95, once="", pause=0.0):
+    def __init__(self, way="kill", begin=0.9, end=0.95, once="", pause=0.0, after=0):
         super().__init__()
         self.way, self.begin, self.end, self.once, self.pause = way, begin, end, once, pause
+        self.after, self.seen = after, 0
 
     def evaluate(self, designs):
         time.sleep(self.pause * len(designs))
         bad = (designs[:, 2] >= self.begin) & (designs[:, 2] <= self.end)
-        if np.any(bad) and self._willing():
+        self.seen += len(designs)
+        if np.any(bad) and self.seen > self.after and self._willing():
             _WAYS[self.way]()
         return super().evaluate(designs)
 

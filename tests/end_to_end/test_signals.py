@@ -63,14 +63,20 @@ def descendants(pid):
     return [pid, *(each for child in found for each in descendants(child))]
 
 
-@pytest.mark.parametrize("deadline", ["", "10 min"])
 @pytest.mark.parametrize(
-    ("way", "backend", "seeds"),
-    [("hang", "sequential", "[1]"), ("hang", "loky", "[1]"), ("hang_compiled", "loky", "[1, 2]")],
+    ("way", "backend", "seeds", "deadline"),
+    [
+        ("hang", "sequential", "[1]", ""),
+        ("hang_compiled", "sequential", "[1]", "10 min"),
+        ("hang", "loky", "[1]", "10 min"),
+        ("hang_compiled", "loky", "[1, 2]", ""),
+    ],
 )
 def test_the_first_signal_ends_a_campaign_whose_model_does_not_end(tmp_path, way, backend, seeds, deadline):
     """Each batch takes 60 ms, until one that has no end; what came before it is in the log after the signal."""
-    process = start(tmp_path, f"way: {way}, begin: 0.97, end: 1, pause: 0.005, once: once", backend, seeds, deadline)
+    process = start(
+        tmp_path, f"way: {way}, begin: 0, end: 1, after: 40, pause: 0.005, once: once", backend, seeds, deadline
+    )
     wait_until((tmp_path / "once").exists, "the model did not hang")
     time.sleep(0.5)
     processes = descendants(process.pid)
@@ -82,9 +88,10 @@ def test_the_first_signal_ends_a_campaign_whose_model_does_not_end(tmp_path, way
     assert words.splitlines()[-1].strip() == "divideropt run rough.yaml"
     assert "Traceback" not in words
     wait_until(lambda: not alive(processes), "a process has outlived the command")
-    if way == "hang":  # one that keeps the interpreter's lock keeps the flush from being done, too
+    if way == "hang" or deadline:  # a model that keeps the interpreter's lock keeps the flush from being done, too
         log = pd.read_parquet(tmp_path / "results" / "rough" / "evaluations" / "nsga2-1")
         assert len(log) % 12 == 0
+        assert len(log) >= 36
 
 
 def test_the_second_signal_leaves_at_once(tmp_path):
@@ -100,8 +107,7 @@ def test_the_second_signal_leaves_at_once(tmp_path):
     process.communicate()
 
 
-@pytest.mark.parametrize("deadline", ["", "10 min"])
-@pytest.mark.parametrize("seeds", ["[1]", "[1, 2]"])
+@pytest.mark.parametrize(("seeds", "deadline"), [("[1]", "10 min"), ("[1, 2]", "")])
 def test_workers_end_with_their_parent_and_leave_nothing_in_shared_memory(tmp_path, seeds, deadline):
     for send in (os.kill, os.killpg):
         process = start(tmp_path, "way: hang_compiled, end: 1, once: once", seeds=seeds, deadline=deadline)
@@ -114,18 +120,25 @@ def test_workers_end_with_their_parent_and_leave_nothing_in_shared_memory(tmp_pa
         wait_until(lambda pids=processes: not alive(pids), "a worker has outlived its parent")
         assert time.monotonic() - killed < 5.0
         process.communicate()
-        left = [p.name for p in Path("/dev/shm").iterdir() if {str(pid) for pid in processes} & set(p.name.split("-"))]
+        left = [
+            p.name for p in Path("/dev/shm").iterdir() if {str(pid) for pid in processes} & set(p.name.split("-"))
+        ]
         assert left == []
         assert not [p for p in Path("/dev/shm").glob("joblib_*") if f"_{process.pid}_" in p.name]
         (tmp_path / "once").unlink()
 
 
-def test_a_signal_in_the_first_moments_shows_no_traceback(tmp_path):
-    """From Python's own beginnings, before a line of ours is run, the signal may kill the process by itself."""
+def test_a_signal_in_the_first_moments_shows_no_traceback_of_ours(tmp_path):
+    """Python's own beginnings, before a line of ours is run, are not ours to mend: they may show theirs."""
+    ours = 0
     for i in range(20):
         process = start(tmp_path, "pause: 0.01")
         time.sleep(0.05 * (i + 1))
         os.killpg(process.pid, signal.SIGINT)
         words = process.communicate(timeout=60)[1]
-        assert process.returncode in {130, -signal.SIGINT}, words
-        assert "Traceback" not in words or "divideropt" not in words, words
+        if "Traceback" in words:
+            assert f"{os.sep}divideropt{os.sep}" not in words, words
+        else:
+            assert process.returncode in {130, -signal.SIGINT}, words
+            ours += process.returncode == 130
+    assert ours >= 5

@@ -19,7 +19,16 @@ def hired(parallel: ParallelConfig, workers: int, store: Path) -> Iterator[Crew 
 
     Yields:
         Them, or None where this process is alone.
+
+    Raises:
+        UsageError: The cluster is not there or unfit.
     """
+    if parallel.scheduler is not None:
+        from divideropt.campaign.cluster import DaskCrew  # noqa: PLC0415 (an optional extra)
+
+        with closing(DaskCrew(parallel.scheduler, store)) as cluster:
+            yield cluster
+        return
     if parallel.backend == "sequential" or workers == 1:
         yield None
         return

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import cast
 
+from divideropt.campaign.cluster import abandoned, on_cluster
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dropping import SharedLog, Stopping
 from divideropt.campaign.dump import dump_campaign
@@ -64,7 +65,8 @@ def simulate_share(text: str, designs: FloatArray, suspicious: bool = False) -> 
     """
     leave_signals_to_parent()
     campaign, problem = _prepared(text)
-    guard = _share_guard(text) if suspicious or campaign.model.deadline is not None else None
+    guarded = suspicious or campaign.model.deadline is not None or _endangers_cluster(problem)
+    guard = _share_guard(text) if guarded else None
     return problem.simulate(designs) if guard is None else guard.simulate(designs)
 
 
@@ -103,7 +105,7 @@ def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate:
     stop = store.status_folder / STOP_FILE
     reference = reference_of(campaign)
     reporter = Reporter(store.status_folder / f"{run.name}.json", run.name, run.options.budget, problem, reference)
-    mishaps = Mishaps(store.status_folder, run.name)
+    mishaps, gone = Mishaps(store.status_folder, run.name), abandoned()
     try:
         with store.writing_run(run.name), _surviving(mishaps) as died:
             if stop.exists():
@@ -116,7 +118,7 @@ def work(campaign: Campaign, problem: Problem, folder: Path, run: Run, simulate:
                     if guard is not None:
                         guard.stop()
 
-                with Stopping(stop.exists, drop) as stopping:
+                with Stopping(lambda: stop.exists() or gone(), drop) as stopping:
                     here = problem.simulate if guard is None else guard.simulate
                     execute(run, problem, log, simulate or here, reporter, lambda: stopping.heard)
     except StoppedError:
@@ -145,9 +147,12 @@ def _surviving(mishaps: Mishaps) -> Iterator[bool]:
 
 @contextmanager
 def _guarding(campaign: Campaign, problem: Problem, suspicious: bool) -> Iterator[Guard | None]:
-    """Give a child process to simulate in where a design has a deadline or the last process died; else None."""
+    """Give a child process to simulate in where a design has a deadline or the last process died; else None.
+
+    A model of somebody's own has one on a cluster, too, whose worker would take other tasks with it.
+    """
     deadline = campaign.model.deadline
-    if deadline is None and not suspicious:
+    if deadline is None and not suspicious and not _endangers_cluster(problem):
         yield None
         return
     guard = Guard(dump_campaign(campaign), len(problem.model.quantities), deadline, suspicious=suspicious)
@@ -177,6 +182,10 @@ def _prepared(text: str) -> tuple[Campaign, Problem]:
 def _prepared_reference(text: str) -> Problem:
     """Make the problem by which the campaign's is verified, which the parent has found to exist."""
     return cast(Problem, reference_problem(_prepared(text)[1]))
+
+
+def _endangers_cluster(problem: Problem) -> bool:
+    return on_cluster() and not dividers(problem.model)
 
 
 @cache
