@@ -2,7 +2,6 @@
 
 import os
 import shlex
-import signal
 import sys
 import traceback
 from contextlib import suppress
@@ -11,9 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from divideropt.errors import DiskError, DivideroptError, FileMistakes, NoFeasibleDesignError, UsageError
+from divideropt.errors import (
+    DiskError,
+    DivideroptError,
+    FileMistakes,
+    IncompleteRunsError,
+    NoFeasibleDesignError,
+    UsageError,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pandas as pd
 
     from divideropt.analysis import Tally
@@ -31,7 +39,6 @@ _SCENARIO = click.option("--scenario", default="scenario", metavar="NAME", help=
 
 def main() -> None:
     """Run the command and leave with its exit code."""
-    signal.signal(signal.SIGTERM, _terminated)
     try:
         code = commands.main(standalone_mode=False) or 0
     except click.ClickException as error:
@@ -92,6 +99,8 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.front.points} designs)")
     _say(_counted(done.front))
     _say(f"report: {write_report(done.store, logs=done.logs)}")
+    if done.failures:
+        raise _incomplete(folder, done.failures, again)
 
 
 @commands.command()
@@ -134,6 +143,10 @@ def status(store: Path, as_json: bool) -> None:
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
         volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
         lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        if item.failure is not None:
+            lines.append(f"  incomplete, given up: {item.failure}")
+        if not item.repeatable:
+            lines.append("  not repeatable from scratch: a simulation timed out or crashed")
     _write_data("\n".join(lines) + "\n")
 
 
@@ -270,11 +283,6 @@ def _write_table(table: "pd.DataFrame", out: Path | None) -> None:
     publish(out, write)
 
 
-def _terminated(number: int, frame: object) -> None:
-    _say("divideropt: stopped by SIGTERM; nothing that was logged is lost")
-    sys.exit(128 + number)
-
-
 def _write_data(text: str) -> None:
     """Write to standard output; a reader who has seen enough is no mistake, a full disk is."""
     if sys.stdout is None:
@@ -294,6 +302,14 @@ def _counted(count: "Tally") -> str:
     largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
     words = f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
     return f"{words}; largest deviation: {largest}" if largest else words
+
+
+def _incomplete(folder: Path, failures: "Mapping[str, str]", again: str) -> IncompleteRunsError:
+    reasons = "\n  ".join(f"{name}: {reason}" for name, reason in failures.items())
+    return IncompleteRunsError(
+        f"{folder}: {len(failures)} of the runs are incomplete; the others are done, and fronts and report hold what "
+        f"was logged:\n  {reasons}\nTo try them again from their logs:\n  {again}"
+    )
 
 
 def _count(number: int | None) -> str:

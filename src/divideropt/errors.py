@@ -89,6 +89,12 @@ class NoFeasibleDesignError(DivideroptError):
     exit_code = 5
 
 
+class IncompleteRunsError(DivideroptError):
+    """Some runs were given up, since their process died again and again; the others are done."""
+
+    exit_code = 6
+
+
 class DiskError(DivideroptError):
     """The disk refused: full, read-only, or gone."""
 

@@ -2,7 +2,7 @@
 
 from divideropt.analysis.fronts import combined_front, nondominated
 from divideropt.analysis.indicators import best_attainment, hypervolume, hypervolume_history
-from divideropt.analysis.summary import Summary, summarise
+from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "hypervolume_history",
     "marked",
     "nondominated",
+    "repeatable",
     "summarise",
     "tally",
     "worth_verifying",

@@ -9,8 +9,12 @@ import pyarrow as pa
 
 from divideropt.analysis.fronts import nondominated
 from divideropt.analysis.indicators import best_attainment
+from divideropt.models import Outcome
 from divideropt.problem import Problem, Told
 from divideropt.store import TableSchema
+
+UNREPEATABLE = (Outcome.TIMED_OUT, Outcome.CRASHED)
+"""Outcomes a clock or a machine makes: a run that has one may come out otherwise from scratch."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,11 @@ class Summary:
     def evaluations(self) -> int:
         """Number of rows."""
         return len(self.told.F)
+
+
+def repeatable(outcomes: Mapping[str, int]) -> bool:
+    """Whether a run whose simulations ended so comes out the same from scratch."""
+    return not any(outcome in outcomes for outcome in UNREPEATABLE)
 
 
 def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) -> Summary:

@@ -145,6 +145,10 @@ class DividerConfig(Section):
     solver: SolverConfig = Field(default_factory=SolverConfig)
     """How the response is integrated."""
 
+    @property
+    def deadline(self) -> None:
+        """None: a simulation ends by its budget of steps, `solver.max_steps`."""
+
     def base_parameters(self) -> dict[str, float]:
         """Return every parameter by name, SI, as each design has it but for the variables."""
         return parameter_set(self.parameters) | dict(self.set)

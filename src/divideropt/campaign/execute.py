@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -9,13 +10,28 @@ from divideropt.campaign.plan import Run
 from divideropt.errors import StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem, Told, one_thread
-from divideropt.store import RunLog
 
 Simulate = Callable[[FloatArray], Evaluations]
 
 
 class StoppedError(Exception):
     """Somebody asked the run to stop; what it computed is on disk."""
+
+
+class Log(Protocol):
+    """What a run needs of its log; see `divideropt.store.RunLog`."""
+
+    def replay(self) -> Iterator[Evaluations]:
+        """Yield the logged batches in order."""
+        ...
+
+    def append(self, evaluations: Evaluations) -> None:
+        """Log a batch."""
+        ...
+
+    def flush(self) -> None:
+        """Publish what is pending."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -34,7 +50,7 @@ class Progress:
 def execute(
     run: Run,
     problem: Problem,
-    log: RunLog,
+    log: Log,
     simulate: Simulate,
     report: Callable[[Progress], None],
     stopping: Callable[[], bool],

@@ -1,6 +1,7 @@
 """May a store go on with this campaign? Only budgets, seeds and strategies may be added to.
 
-What touches no evaluation, `verification` and `parallel`, may be changed at will.
+What touches no evaluation, `verification` and `parallel`, may be changed at will; and `model.deadline`, which counts
+for designs that are not yet logged.
 """
 
 from collections.abc import Iterator, Mapping
@@ -55,7 +56,9 @@ def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
 
 def _as_written(campaign: Campaign) -> Any:
     """Return a campaign as resolved, as plain data with units: what a user can compare."""
-    return read_text(dump_campaign(campaign), "campaign").data
+    data: Any = read_text(dump_campaign(campaign), "campaign").data
+    data["model"].pop("deadline", None)
+    return data
 
 
 def _compare(path: str, before: Any, after: Any) -> Iterator[str]:

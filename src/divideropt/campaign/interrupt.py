@@ -1,15 +1,22 @@
-"""How work ends early: by a signal, which is a request to stop, or by the loss of a worker process."""
+"""How work ends early: by a signal, which is a request to stop, or by the loss of worker processes."""
 
 import os
 import signal
+import socket
+import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import FrameType
 
-from joblib.externals.loky.process_executor import TerminatedWorkerError
-
+from divideropt.campaign.crew import ProcessDiedError
 from divideropt.errors import DivideroptError
+
+LEAVE_SECONDS = 4.0
+"""How long after the first signal the command ends, whatever is still at work [s]. What workers have computed is on
+disk by then; see `divideropt.campaign.dropping`."""
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class InterruptedRunError(DivideroptError):
@@ -24,7 +31,7 @@ class InterruptedRunError(DivideroptError):
 
 
 class WorkerLostError(DivideroptError):
-    """A worker process died; the exit code is that of a bug, since nothing of the user's made it."""
+    """Worker processes died again and again; the exit code is that of a bug, since nothing of the user's made it."""
 
 
 class Interruption:
@@ -38,7 +45,8 @@ class Interruption:
             again: The command that goes on.
             stop: The file that tells workers to stop.
         """
-        self._folder, self._again, self._stop = folder, again, stop
+        self.again = again
+        self._folder, self._stop = folder, stop
         self._signal: int | None = None
 
     @property
@@ -53,39 +61,78 @@ class Interruption:
             InterruptedRunError: Somebody did.
         """
         if self._signal is not None:
-            raise InterruptedRunError(self._signal, self._folder, self._again)
+            raise InterruptedRunError(self._signal, self._folder, self.again)
 
     @contextmanager
     def signals(self) -> Iterator[None]:
-        """Turn the first SIGINT or SIGTERM into a request to stop; the second ends everything at once."""
+        """Turn the first SIGINT or SIGTERM into a request to stop; the second ends everything at once.
 
-        def hear(number: int, frame: FrameType | None) -> None:
-            if self._signal is not None:
-                os._exit(128 + number)
+        They are heard by a thread, through a pipe: the main thread may be in compiled code for long.
+        """
+        ours, theirs = socket.socketpair()
+        theirs.setblocking(False)
+        listener = threading.Thread(target=self._listen, args=(ours,), daemon=True)
+        listener.start()
+        old = {number: signal.signal(number, self._hear) for number in _SIGNALS}
+        old_pipe = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+        try:
+            yield
+        finally:
+            signal.set_wakeup_fd(old_pipe)
+            for number, handler in old.items():
+                signal.signal(number, handler)
+            theirs.close()
+            listener.join()
+            ours.close()
+
+    def _listen(self, link: socket.socket) -> None:
+        """Hear the first signal and the second; an empty answer says that the work is over."""
+        while received := link.recv(1):
+            if received[0] in _SIGNALS:
+                break
+        else:
+            return
+        self._hear(received[0])
+        link.settimeout(LEAVE_SECONDS)
+        try:
+            received = link.recv(1)
+        except TimeoutError:
+            self._leave()
+        if received:
+            os._exit(128 + received[0])
+
+    def _hear(self, number: int, frame: object = None) -> None:
+        """Take a signal for a request to stop, in the main thread if that is free, else in the listener's."""
+        if self._signal is None:
             self._signal = number
             with suppress(OSError):  # a disk that refuses will be heard of soon enough
                 self._stop.touch()
 
-        old = {number: signal.signal(number, hear) for number in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in old.items():
-                signal.signal(number, handler)
+    def _leave(self) -> None:
+        """End the command while its main thread is still at work, as if it had ended by itself."""
+        with suppress(OSError, InterruptedRunError):
+            if sys.stderr.isatty():
+                sys.stderr.write("\x1b[?25h")  # the cursor, which the display hides
+            try:
+                self.check()
+            except InterruptedRunError as error:
+                sys.stderr.write(f"divideropt: {error}\n")
+                sys.stderr.flush()
+        os._exit(128 + (self._signal or 0))
 
     @contextmanager
     def workers(self) -> Iterator[None]:
-        """Word the loss of a worker process.
+        """Word the loss of worker processes.
 
         Raises:
-            InterruptedRunError: A signal reached it before it could ignore it.
-            WorkerLostError: It died of something else.
+            InterruptedRunError: Somebody asked to stop.
+            WorkerLostError: They died of something else, again and again.
         """
         try:
             yield
-        except TerminatedWorkerError as error:
+        except ProcessDiedError as error:
             self.check()
             raise WorkerLostError(
-                f"a worker process was killed, perhaps for want of memory. What was logged is intact. To go on:\n"
-                f"  {self._again}"
+                f"a worker process was killed, again and again ({error}), perhaps for want of memory. What was "
+                f"logged is intact. To go on:\n  {self.again}"
             ) from error

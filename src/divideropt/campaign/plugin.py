@@ -8,7 +8,7 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field, PlainValidator
 
-from divideropt.campaign.fields import Tables, by_name, measure_of
+from divideropt.campaign.fields import POSITIVE, Measure, Tables, by_name, measure_of
 from divideropt.campaign.sections import Section, show
 from divideropt.errors import LONGEST_WORDS, UsageError, words_of
 from divideropt.models import Model, Parameter, Quantity
@@ -86,6 +86,9 @@ class PluginConfig(Section):
     """`package.module:Class`; `divideropt.models.Model` says what the class offers."""
     options: dict[str, Any] = Field(default_factory=dict)
     """Keyword arguments of the class."""
+    deadline: Annotated[float, Measure("s", POSITIVE)] | None = None
+    """How long the simulation of one design may take; beyond it the design is `timed_out`. Where given, designs are
+    simulated singly in a process of their own, which can be ended; where not, a model that hangs hangs its run."""
     set: Annotated[
         Mapping[str, float],
         PlainValidator(by_name("parameters", lambda parameter, raw: measure_of(parameter).read(raw))),

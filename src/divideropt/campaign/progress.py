@@ -130,6 +130,11 @@ class Display:
         self._over.set()
         self._thread.join()
 
+    def say(self, words: str) -> None:
+        """Print a line of its own."""
+        with suppress(OSError):  # nobody to hear it
+            self._console.print(words, soft_wrap=True, markup=False)
+
     def _show(self) -> None:
         with suppress(OSError):  # nobody to see it
             self._show_until_left()

@@ -1,21 +1,23 @@
 """Runs a campaign: its runs in parallel, then the fronts, whose points of interest are verified."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
-from joblib import Parallel, delayed, parallel_config
 
 from divideropt.analysis import Summary, Tally, combined_front, summarise, tally, worth_verifying
 from divideropt.campaign.config import Campaign
+from divideropt.campaign.crew import Crew, ProcessDiedError
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_extends
+from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import Run, build_problem, plan_runs
+from divideropt.campaign.mishaps import RESTARTS, Mishaps
+from divideropt.campaign.plan import Run, build_problem, dividers, plan_runs
 from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
@@ -34,11 +36,13 @@ class Outcomes:
         store: The store.
         front: The designs on the combined front, counted.
         logs: Each run's log, summed up.
+        failures: Why runs were given up, by their names; empty where all came to their end.
     """
 
     store: Store
     front: Tally
     logs: Mapping[str, Summary]
+    failures: Mapping[str, str]
 
 
 class Runner:
@@ -52,7 +56,7 @@ class Runner:
         Args:
             campaign: As resolved.
             folder: The store's.
-            workers: Processes at a time.
+            workers: Processes at a time, on this machine.
             words: Where progress is shown.
             again: The command that goes on if this one is stopped.
         """
@@ -60,7 +64,7 @@ class Runner:
         self._text = dump_campaign(campaign)
         self._store = Store(folder)
         self._interruption = Interruption(folder, again, self._store.status_folder / STOP_FILE)
-        self._workers = 1 if campaign.parallel.backend == "sequential" else workers
+        self._workers = workers
         self._words = words
 
     def run(self, *, fresh: bool = False) -> Outcomes:
@@ -73,16 +77,16 @@ class Runner:
             What came out.
 
         Raises:
-            UsageError: The model's reference is wrong.
+            UsageError: The model's reference is wrong, or the cluster is not there or unfit.
             StoreInUseError: Another process writes to the store.
             StoreError: The store belongs to another campaign, or is damaged.
             DiskError: The disk refused.
             InterruptedRunError: A signal stopped it.
-            WorkerLostError: A worker process died.
+            WorkerLostError: Worker processes died again and again while points were verified.
             NoFeasibleDesignError: No design is feasible.
         """
         problem = build_problem(self._campaign)
-        verifier = Verifier(self._campaign, problem, self._store, self._workers, self._words, self._interruption)
+        verifier = Verifier(self._campaign, problem, self._store, self._words, self._interruption)
         aside = self._store.move_aside() if fresh else None
         if aside is not None:
             say(f"the old store is now {aside}", self._words)
@@ -92,9 +96,12 @@ class Runner:
             if changed is not None:
                 say(changed, self._words)
             self._store.verification(verifier.schema).table()  # damage is said before hours are spent, not after
-            warm_up(problem)
-            self._raise_first(self._drive(problem))
-            return self._write_fronts(problem, verifier)
+            with hired(self._campaign.parallel, self._workers, self._store.folder) as crew:
+                warm_up(problem)
+                endings = self._drive(problem, crew)
+                self._raise_first(endings)
+                failures = {ending.run: ending.failure for ending in endings if ending.failure is not None}
+                return self._write_fronts(problem, verifier, crew, failures)
 
     def _take_campaign(self) -> None:
         """Check that the store is this campaign's, and write down what it has become."""
@@ -109,53 +116,77 @@ class Runner:
             )
         self._store.write_campaign(self._text)
 
-    def _drive(self, problem: Problem) -> list[Ending]:
+    def _drive(self, problem: Problem, crew: Crew | None) -> list[Ending]:
         runs = plan_runs(self._campaign)
         folder = self._store.status_folder
         with disk_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)
             for old in (folder / STOP_FILE, *folder.glob("*.json")):
                 old.unlink(missing_ok=True)
+            for run in runs:  # where this process is alone, an earlier one may have died of the run
+                Mishaps(folder, run.name).forget(deaths=crew is not None)
         self._interruption.check()
-        with self._interruption.workers(), Display(folder, [run.name for run in runs], self._words):
-            return self._drive_with_workers(runs, problem)
+        with Display(folder, [run.name for run in runs], self._words) as display:
+            if crew is None:
+                return [self._persist(lambda run: self._work_here(run, problem), run, display) for run in runs]
+            if len(runs) < crew.size:
+                return self._share_batches(runs, problem, crew, display)
+            return self._one_process_a_run(runs, crew, display)
 
-    def _drive_with_workers(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
-        if self._workers == 1:
-            return [self._work_here(run, problem, problem.simulate) for run in runs]
-        with parallel_config(backend="loky", inner_max_num_threads=1):
-            if len(runs) < self._workers:
-                return self._share_batches(runs, problem)
-            return self._one_process_a_run(runs)
-
-    def _one_process_a_run(self, runs: Sequence[Run]) -> list[Ending]:
+    def _one_process_a_run(self, runs: Sequence[Run], crew: Crew, display: Display) -> list[Ending]:
         """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
+
+        def attempt(run: Run) -> Ending:
+            return crew.call(work_as_process, self._text, self._store.folder.resolve(), run)
+
         longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
-        tasks = (delayed(work_as_process)(self._text, self._store, run) for run in longest)
-        pool = Parallel(n_jobs=self._workers, return_as="generator_unordered", batch_size=1, pre_dispatch="all")
-        return list(pool(tasks))
+        waiting = [crew.submit(self._persist, attempt, run, display) for run in longest]
+        return [ending.result() for ending in waiting]
 
-    def _share_batches(self, runs: Sequence[Run], problem: Problem) -> list[Ending]:
+    def _share_batches(self, runs: Sequence[Run], problem: Problem, crew: Crew, display: Display) -> list[Ending]:
         """Do the runs one after the other, each batch shared by threads, or by processes if threads gain nothing."""
-        threaded = problem.on_threads(self._workers)
-        if threaded is not None:
-            return [self._work_here(run, threaded, threaded.simulate) for run in runs]
-        with Parallel(n_jobs=self._workers) as pool:
+        threaded = problem.on_threads(crew.size) if crew.here else None
+        quick = bool(dividers(problem.model))
 
-            def simulate(designs: FloatArray) -> Evaluations:
-                if len(designs) < self._workers:
-                    return problem.simulate(designs)
-                shares = np.array_split(designs, self._workers)
-                parts = pool(delayed(simulate_share)(self._text, share) for share in shares)
-                return Evaluations(
-                    designs,
-                    np.concatenate([part.quantities for part in parts]),
-                    [verdict for part in parts for verdict in part.verdicts],
-                )
+        def simulate(designs: FloatArray) -> Evaluations:
+            if quick and len(designs) < crew.size:
+                return problem.simulate(designs)
+            shares = np.array_split(designs, min(len(designs), crew.size))
+            waiting = [crew.submit(self._simulate_share, crew, share) for share in shares]
+            return Evaluations.together([part.result() for part in waiting])
 
-            return [self._work_here(run, problem, simulate) for run in runs]
+        def attempt(run: Run) -> Ending:
+            return self._work_here(run, problem, simulate if threaded is None else threaded.simulate)
 
-    def _work_here(self, run: Run, problem: Problem, simulate: Simulate) -> Ending:
+        return [self._persist(attempt, run, display) for run in runs]
+
+    def _simulate_share(self, crew: Crew, share: FloatArray) -> Evaluations:
+        """Have a share evaluated; where its process died, by one that expects that."""
+        try:
+            return crew.call(simulate_share, self._text, share)
+        except ProcessDiedError:
+            return crew.insist(simulate_share, self._text, share, True)
+
+    def _persist(self, attempt: Callable[[Run], Ending], run: Run, display: Display) -> Ending:
+        """Attempt a run; begin it anew from its log where its process dies or breaks down, three times."""
+        reason = ""
+        for number in range(RESTARTS + 1):
+            if number > 0:
+                display.say(f"{run.name}: {reason}; begun anew from its log, {number} of {RESTARTS}")
+            try:
+                return attempt(run)
+            except ProcessDiedError as died:
+                reason = str(died)
+            except Exception as error:  # a bug of ours, of a library or of a model, in this run alone
+                reason = f"it broke down ({type(error).__name__}: {error})"
+            if self._interruption.heard:
+                return Ending(run.name, stopped=True)
+        reason = f"{reason}, {RESTARTS + 1} times"
+        Mishaps(self._store.status_folder, run.name).give_up(reason)
+        display.say(f"{run.name}: given up: {reason}")
+        return Ending(run.name, failure=reason)
+
+    def _work_here(self, run: Run, problem: Problem, simulate: Simulate | None = None) -> Ending:
         return work(self._campaign, problem, self._store, run, simulate)
 
     def _raise_first(self, endings: Sequence[Ending]) -> None:
@@ -164,17 +195,19 @@ class Runner:
                 raise ending.error
         self._interruption.check()
 
-    def _write_fronts(self, problem: Problem, verifier: Verifier) -> Outcomes:
+    def _write_fronts(
+        self, problem: Problem, verifier: Verifier, crew: Crew | None, failures: Mapping[str, str]
+    ) -> Outcomes:
         schema = verifier.schema
         names = sorted(run.name for run in plan_runs(self._campaign))
         logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
         fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)
         wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
-        written = verifier.verify(fronts | {"combined": combined}, wanted)
+        written = verifier.verify(fronts | {"combined": combined}, wanted, crew)
         if combined.num_rows == 0:
             raise NoFeasibleDesignError(
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
             )
-        return Outcomes(self._store, tally(written["combined"], schema), logs)
+        return Outcomes(self._store, tally(written["combined"], schema), logs, failures)

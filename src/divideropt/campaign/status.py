@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from divideropt.analysis import combined_front, hypervolume_history, marked, summarise, tally
+from divideropt.analysis import combined_front, hypervolume_history, marked, repeatable, summarise, tally
 from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.store import Store, TableSchema
@@ -22,6 +23,8 @@ class RunStatus:
         best: Least max λ_i, None without a feasible design or without goals.
         best_design: The `design_id` that has it.
         hypervolume: Of the feasible designs, None without a reference point.
+        repeatable: Whether it comes out the same from scratch: no simulation timed out or crashed.
+        failure: Why it was given up, None if it was not.
     """
 
     run: str
@@ -32,6 +35,8 @@ class RunStatus:
     best: float | None
     best_design: str | None
     hypervolume: float | None
+    repeatable: bool
+    failure: str | None
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,8 @@ def read_status(store: Store) -> StoreStatus:
                 best=None if found.best is None else found.best.value,
                 best_design=None if found.best is None else found.best.design["design_id"][0].as_py(),
                 hypervolume=volumes[0] if volumes else None,
+                repeatable=repeatable(found.outcomes),
+                failure=Mishaps(store.status_folder, run.name).failure,
             )
         )
     damage = None

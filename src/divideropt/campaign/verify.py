@@ -5,11 +5,12 @@ from typing import TextIO
 
 import numpy as np
 import pyarrow as pa
-from joblib import Parallel, delayed, parallel_config
 
 from divideropt.analysis import Tally, combined_front, marked, summarise, tally
 from divideropt.campaign.config import Campaign
+from divideropt.campaign.crew import Crew
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
@@ -40,13 +41,13 @@ def verify_store(store: Store, workers: int | None, words: TextIO, again: str) -
         StoreError: The store is damaged.
         DiskError: The disk refused.
         InterruptedRunError: A signal stopped it.
-        WorkerLostError: A worker process died.
+        WorkerLostError: Worker processes died again and again.
         NoFeasibleDesignError: The fronts are empty.
     """
     campaign = stored_campaign(store)
     problem = build_problem(campaign)
     interruption = Interruption(store.folder, again, store.status_folder / STOP_FILE)
-    verifier = Verifier(campaign, problem, store, workers or campaign.parallel.workers, words, interruption)
+    verifier = Verifier(campaign, problem, store, words, interruption)
     if not verifier.possible:
         raise UsageError(
             f"{store.folder}: the model offers no reference(), by which its results could be verified; "
@@ -64,7 +65,8 @@ def verify_store(store: Store, workers: int | None, words: TextIO, again: str) -
                 "`divideropt status` says how the simulations ended"
             )
         warm_up(problem)
-        return tally(_distinct(verifier.verify(fronts, points).values()), verifier.schema)
+        with hired(campaign.parallel, workers or campaign.parallel.workers, store.folder) as crew:
+            return tally(_distinct(verifier.verify(fronts, points, crew).values()), verifier.schema)
 
 
 class Verifier:
@@ -75,7 +77,6 @@ class Verifier:
         campaign: Campaign,
         problem: Problem,
         store: Store,
-        workers: int,
         words: TextIO,
         interruption: Interruption,
     ) -> None:
@@ -85,7 +86,6 @@ class Verifier:
             campaign: As resolved.
             problem: Made from it.
             store: Its store, which the caller holds for writing.
-            workers: Processes at a time.
             words: Where progress is shown.
             interruption: Hears the signals.
 
@@ -97,7 +97,6 @@ class Verifier:
         self._tolerance = campaign.verification.share
         self._problem, self._reference = problem, reference_problem(problem)
         self._store = store
-        self._workers = 1 if campaign.parallel.backend == "sequential" else workers
         self._words, self._interruption = words, interruption
 
     @property
@@ -105,12 +104,13 @@ class Verifier:
         """Whether the model offers a reference."""
         return self._reference is not None
 
-    def verify(self, fronts: Mapping[str, pa.Table], wanted: Sequence[str]) -> dict[str, pa.Table]:
+    def verify(self, fronts: Mapping[str, pa.Table], wanted: Sequence[str], crew: Crew | None) -> dict[str, pa.Table]:
         """Simulate points again, and write the fronts with what is known of each of theirs.
 
         Args:
             fronts: All the store's, by name.
             wanted: The `design_id` of the points; those simulated again before are not once more.
+            crew: Who simulates; None for this process alone.
 
         Returns:
             The fronts as written.
@@ -119,7 +119,7 @@ class Verifier:
             StoreError: What was kept is damaged, or of other designs.
             DiskError: The disk refused.
             InterruptedRunError: A signal stopped it; the fronts say what was known before.
-            WorkerLostError: A worker process died.
+            WorkerLostError: Worker processes died again and again.
         """
         log = self._store.verification(self.schema)
         known = log.table()
@@ -132,7 +132,7 @@ class Verifier:
         if not missing:
             return written
         points = _named(_distinct(fronts.values()), missing)
-        again = self._simulate(self._reference, self.schema.evaluations(points).designs)
+        again = self._simulate(self._reference, self.schema.evaluations(points).designs, crew)
         fresh = [known]
         try:
             with Counter("verifying: {} of {} front points simulated again", len(missing), self._words) as counter:
@@ -154,17 +154,16 @@ class Verifier:
             self._store.write_front(name, front)
         return made
 
-    def _simulate(self, reference: Problem, designs: FloatArray) -> Iterator[Evaluations]:
+    def _simulate(self, reference: Problem, designs: FloatArray, crew: Crew | None) -> Iterator[Evaluations]:
         """Yield what the reference says of each design, in their order, until somebody asks to stop."""
         asked = self._until_stopped(designs)
-        if self._workers == 1:
+        if crew is None:
             yield from (reference.simulate(design[None]) for design in asked)
             return
         if dividers(reference.model):  # a model of somebody's own has nothing of ours to compile
             warm_up(reference)
-        with parallel_config(backend="loky", inner_max_num_threads=1), self._interruption.workers():
-            pool = Parallel(n_jobs=self._workers, return_as="generator", batch_size=1, pre_dispatch="2*n_jobs")
-            yield from pool(delayed(simulate_again)(self._text, design[None]) for design in asked)
+        with self._interruption.workers():
+            yield from crew.map(simulate_again, ((self._text, design[None]) for design in asked))
 
     def _until_stopped(self, designs: FloatArray) -> Iterator[FloatArray]:
         for design in designs:

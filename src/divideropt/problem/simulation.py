@@ -67,7 +67,7 @@ def _guarded(model: Model, full: FloatArray) -> tuple[FloatArray, list[Verdict]]
     try:
         with np.errstate(all="ignore"):  # a failed design says so by its outcome
             quantities, verdicts = model.evaluate(full)
-    except Exception as error:  # a model may be anybody's
+    except (Exception, SystemExit) as error:  # a model may be anybody's
         if len(full) == 1:
             text = f"the model broke down: {words_of(error)}"
             return np.full((1, len(model.quantities)), np.nan), [Verdict(Outcome.CRASHED, text)]

@@ -11,6 +11,7 @@ import pyarrow as pa
 from divideropt.analysis import Summary, Verified, combined_front, marked, summarise
 from divideropt.analysis.summary import Best
 from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
@@ -159,7 +160,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         best,
         leanings(front, problem.space),
         read_responses(problem, front, best),
-        _progress(facts) + notes,
+        _progress(facts, store) + notes,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
     )
 
@@ -189,7 +190,7 @@ def _front(
     return table, ()
 
 
-def _progress(runs: Sequence[RunFacts]) -> tuple[str, ...]:
+def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
     waiting = [run.name for run in runs if run.evaluations == 0]
     clocked = [run.name for run in runs if not run.repeatable]
     notes = []
@@ -197,6 +198,8 @@ def _progress(runs: Sequence[RunFacts]) -> tuple[str, ...]:
         notes.append(f"Not begun yet: {', '.join(waiting)}.")
     if clocked:
         notes.append(f"Not repeatable from scratch, since a simulation timed out or crashed: {', '.join(clocked)}.")
+    failures = {run.name: Mishaps(store.status_folder, run.name).failure for run in runs}
+    notes += [f"Incomplete, given up: {name}: {reason}." for name, reason in failures.items() if reason]
     return tuple(notes)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.analysis import Summary, hypervolume_history
+from divideropt.analysis import Summary, hypervolume_history, repeatable
 from divideropt.campaign.plan import Run
 from divideropt.models import Outcome
 from divideropt.models.base import FloatArray
@@ -16,9 +16,6 @@ MARKS = 60
 
 COSTLY_MARKS = 12
 """The same from five objectives on, where one hypervolume may take seconds."""
-
-UNREPEATABLE = (Outcome.TIMED_OUT, Outcome.CRASHED)
-"""Outcomes a clock or a machine makes: a run that has one may come out otherwise from scratch."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +53,7 @@ class RunFacts:
     @property
     def repeatable(self) -> bool:
         """Whether the run comes out the same from scratch."""
-        return not any(outcome in self.outcomes for outcome in UNREPEATABLE)
+        return repeatable(self.outcomes)
 
     @property
     def hypervolume(self) -> float | None:

@@ -1,0 +1,147 @@
+"""A worker that is killed, hangs or breaks down costs its run time, and the others nothing."""
+
+import io
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from divideropt.campaign import runner
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.mishaps import RESTARTS
+from divideropt.campaign.runner import Runner
+from divideropt.campaign.status import read_status
+from divideropt.store import Store
+
+ONE = """  nsga2: {population: 12, generations: 2, seeds: [SEEDS]}
+"""
+TEXT = """
+name: rough
+model: {kind: "rough_model:Rough", options: {OPTIONS}DEADLINE}
+variables: {x1: [0, 1], x2: [0, 1], x3: [0, 1]}
+objectives:
+  f1: {goal: 0.2}
+  f2: {goal: 2, weight: 2}
+constraints: {spare: {min: 0 m}}
+reference_point: {f1: 1, f2: 20}
+strategies:
+  nsga2: {population: 12, generations: 5, seeds: [1, 2]}
+  complex: {points: 6, evaluations: 60, seeds: [3]}
+parallel: {workers: WORKERS, backend: BACKEND}
+"""
+
+
+def run(folder: Path, options: str, backend="loky", workers=2, deadline="", text=TEXT):
+    words = io.StringIO()
+    text = text.replace("OPTIONS", options).replace("DEADLINE", deadline and f", deadline: {deadline}")
+    campaign = parse_campaign(text.replace("BACKEND", backend).replace("WORKERS", str(workers)))
+    return Runner(campaign, folder, workers, words).run(), words.getvalue()
+
+
+def logs(folder: Path) -> dict[str, pd.DataFrame]:
+    return {p.name: pd.read_parquet(p) for p in sorted((folder / "evaluations").iterdir())}
+
+
+def assert_same(first: Path, second: Path) -> None:
+    one, other = logs(first), logs(second)
+    assert list(one) == list(other)
+    for name, table in one.items():
+        pd.testing.assert_frame_equal(table, other[name], check_exact=True)
+
+
+@pytest.fixture(scope="module", name="calm")
+def _calm(tmp_path_factory):
+    """A store of the same campaign in which nothing goes wrong."""
+    folder = tmp_path_factory.mktemp("calm") / "store"
+    run(folder, "begin: 2", backend="sequential")
+    return folder
+
+
+def test_a_worker_killed_once_costs_no_cell(calm, tmp_path):
+    done, words = run(tmp_path / "store", f"once: {tmp_path / 'once'}")
+    assert_same(tmp_path / "store", calm)
+    assert words.count("killed by signal 9, SIGKILL; begun anew from its log, 1 of 3") == 1
+    assert not done.failures
+    assert all(item.repeatable and item.failure is None for item in read_status(Store(tmp_path / "store")).runs)
+
+
+def test_a_design_that_kills_its_process_is_blamed_alone(calm, tmp_path):
+    run(tmp_path / "store", "way: fault, begin: 0.87, end: 0.885")
+    whole = pd.concat(logs(tmp_path / "store").values())
+    bad = whole.x3.between(0.87, 0.885)
+    assert bad.sum() >= 2
+    assert (whole.outcome == "crashed").equals(bad)
+    assert whole.outcome_text[bad].str.fullmatch("it killed its process, twice: signal 11, SIGSEGV").all()
+    assert [len(table) for table in logs(tmp_path / "store").values()] == [len(t) for t in logs(calm).values()]
+    marked = {item.run: not item.repeatable for item in read_status(Store(tmp_path / "store")).runs}
+    assert marked == {name: "crashed" in set(table.outcome) for name, table in logs(tmp_path / "store").items()}
+
+
+@pytest.mark.parametrize("way", ["raise", "leave"])
+@pytest.mark.parametrize("backend", ["sequential", "loky"])
+def test_a_design_that_breaks_down_is_blamed_alone(tmp_path, way, backend):
+    _, words = run(tmp_path / "store", f"way: {way}", backend=backend)
+    whole = pd.concat(logs(tmp_path / "store").values())
+    assert (whole.outcome == "crashed").equals(whole.x3.between(0.9, 0.95))
+    assert "begun anew" not in words
+
+
+@pytest.mark.parametrize(
+    ("way", "backend", "seeds"),
+    [("hang_compiled", "sequential", "1"), ("hang", "loky", "1, 2"), ("hang", "loky", "1"), ("vanish", "loky", "1")],
+)
+def test_a_design_beyond_the_deadline_is_ended_and_blamed_alone(tmp_path, way, backend, seeds):
+    text = "".join(TEXT.partition("strategies:\n")[:2]) + ONE.replace("SEEDS", seeds) + TEXT.splitlines()[-1]
+    run(tmp_path / "store", f"way: {way}, begin: 0.85, end: 0.91", backend, deadline="2 s", text=text)
+    whole = pd.concat(logs(tmp_path / "store").values())
+    bad = whole.x3.between(0.85, 0.91)
+    assert bad.any()
+    assert (whole.outcome == ("crashed" if way == "vanish" else "timed_out")).equals(bad)
+    words = "exit code 7" if way == "vanish" else "no result within the deadline of 2 s"
+    assert whole.outcome_text[bad].str.contains(words).all()
+
+
+def test_a_deadline_changes_no_cell_and_may_change_in_a_store(calm, tmp_path):
+    run(tmp_path / "store", "begin: 2", deadline="1 min", text=TEXT.replace("generations: 5", "generations: 3"))
+    run(tmp_path / "store", "begin: 2", deadline="2 min")
+    assert_same(tmp_path / "store", calm)
+
+
+def test_a_share_of_a_batch_that_kills_its_process_is_done_again_singly(tmp_path):
+    text = "".join(TEXT.partition("strategies:\n")[:2]) + ONE.replace("SEEDS", "1") + TEXT.splitlines()[-1]
+    run(tmp_path / "store", "way: kill, begin: 0.85, end: 0.91", text=text)
+    whole = logs(tmp_path / "store")["nsga2-1"]
+    assert (whole.outcome == "crashed").equals(whole.x3.between(0.85, 0.91))
+    assert (whole.outcome == "crashed").any()
+
+
+@pytest.mark.parametrize("backend", ["sequential", "loky"])
+def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on(
+    calm, tmp_path, monkeypatch, backend
+):
+    work = runner.work
+    attempts = []
+
+    def broken(campaign, problem, folder, run, simulate=None):
+        if run.name == "nsga2-2":
+            attempts.append(run.name)
+            raise MemoryError("no room")
+        return work(campaign, problem, folder, run, simulate)
+
+    monkeypatch.setattr(runner, "work", broken)
+    workers = 4 if backend == "loky" else 1  # more than runs: batches are shared, and the runs driven from here
+    done, words = run(tmp_path / "store", "begin: 2", backend, workers)
+    assert len(attempts) == RESTARTS + 1
+    assert done.failures == {"nsga2-2": "it broke down (MemoryError: no room), 4 times"}
+    assert "nsga2-2: given up" in words
+    found, expected = logs(tmp_path / "store"), logs(calm)
+    assert list(found) == ["complex-3", "nsga2-1"]
+    for name, table in found.items():
+        pd.testing.assert_frame_equal(table, expected[name], check_exact=True)
+    assert (tmp_path / "store" / "fronts" / "combined.parquet").is_file()
+    status = {item.run: item.failure for item in read_status(Store(tmp_path / "store")).runs}
+    assert status == {"nsga2-1": None, "nsga2-2": done.failures["nsga2-2"], "complex-3": None}
+    monkeypatch.undo()
+    done, _ = run(tmp_path / "store", "begin: 2", backend, workers)
+    assert not done.failures
+    assert_same(tmp_path / "store", calm)
