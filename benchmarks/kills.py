@@ -5,8 +5,8 @@
 Five campaigns on a model that does nothing but wait, one of each strategy and one of all four on two workers. Each is
 run once to its end. Then it is begun anew, the whole process group is killed (-9) at a random moment, and it is begun
 again on the same store, until it comes to its end; and so on until the kills are spent. After each kill every logged
-row is compared with that of the uninterrupted run, cell by cell, and counted against what was there before; at each end
-the fronts are compared too. Prints a line a campaign; leaves with 1 if anything was lost or differs.
+row is compared with that of the uninterrupted run, cell by cell, and counted against what was there before; at each
+end the fronts are compared too. Prints a line a campaign; leaves with 1 if anything was lost or differs.
 """
 
 import argparse
