@@ -137,7 +137,7 @@ class Runner:
         """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
 
         def attempt(run: Run) -> Ending:
-            return crew.call(work_as_process, self._text, self._store.folder.resolve(), run)
+            return crew.call(work_as_process, self._text, self._store.absolute(), run)
 
         longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
         waiting = [crew.submit(self._persist, attempt, run, display) for run in longest]

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from copy import copy
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -46,6 +47,12 @@ class Store:
         """Name the folder; nothing is read or made yet."""
         self.folder = folder
         self._owner: Owner | None = None
+
+    def absolute(self) -> "Store":
+        """Return the same store, with the same owner, by a name that holds in any working directory."""
+        there = copy(self)
+        there.folder = self.folder.resolve()
+        return there
 
     @property
     def campaign_path(self) -> Path:
