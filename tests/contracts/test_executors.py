@@ -33,7 +33,7 @@ parallel: PARALLEL
 @pytest.fixture(scope="module", name="cluster")
 def _cluster():
     """A scheduler and two worker processes, on loopback."""
-    options = {"dashboard_address": None, "silence_logs": 50, "host": "127.0.0.1"}
+    options = {"dashboard_address": "127.0.0.1:0", "silence_logs": 50, "host": "127.0.0.1"}
     with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, **options) as cluster:
         yield cluster
 
@@ -149,7 +149,7 @@ def assert_only_blamed(folder: Path, outcome: str, begin: float, end: float) -> 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
 def test_a_campaign_that_is_stopped_goes_on_to_the_same_bytes(parallel, calm, tmp_path, number, code):
-    """The model hangs once, in the middle of a run, when the signal comes; what is left elsewhere lets the store go."""
+    """The model hangs once, in the middle of a run, when the signal comes; what is left elsewhere lets go of it."""
     text = written(parallel, f"way: hang, begin: 0.8, once: {tmp_path / 'once'}")
     process = command(tmp_path, text)
     end = time.monotonic() + 60

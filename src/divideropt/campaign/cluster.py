@@ -49,10 +49,10 @@ class DaskCrew(Crew):
             self._client.wait_for_workers(1, timeout=CONNECT_SECONDS)
         except (OSError, TimeoutError, ValueError) as error:
             raise UsageError(
-                f"{scheduler}: no Dask scheduler with a worker answers ({type(error).__name__}: {error}); start both, see "
-                "docs/how-to/cluster.md, or mend parallel.scheduler"
+                f"{scheduler}: no scheduler with a worker answers ({type(error).__name__}: {error}); start both, "
+                "see docs/how-to/cluster.md, or mend parallel.scheduler"
             ) from None
-        self._lost = (distributed.scheduler.KilledWorker, distributed.CancelledError)
+        self._killed, self._cancelled = distributed.scheduler.KilledWorker, distributed.CancelledError
         try:
             super().__init__(min(self._fit_workers(scheduler, store.resolve()), MOST_CALLS))
         except BaseException:
@@ -64,8 +64,10 @@ class DaskCrew(Crew):
         future = self._client.submit(function, *arguments, pure=False)
         try:
             result: T = future.result()
-        except self._lost as error:
-            raise ProcessDiedError(f"the cluster gave it up ({type(error).__name__})") from error
+        except self._killed as error:
+            raise ProcessDiedError("Dask gave it up, since worker after worker died of it", final=True) from error
+        except self._cancelled as error:
+            raise ProcessDiedError("Dask dropped it") from error
         finally:
             future.release()
         return result
