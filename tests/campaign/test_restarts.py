@@ -149,7 +149,7 @@ def test_the_command_says_which_runs_are_incomplete_and_ends_with_6(tmp_path, mo
         patch.setattr(runner, "work", breaking(runner.work))
         code, _, words = called(["run", "rough.yaml"], monkeypatch, capsys)
     assert code == 6
-    assert "1 of the runs are incomplete" in words
+    assert "1 of 3 runs are incomplete" in words
     assert "  nsga2-2: it broke down (MemoryError: no room), 4 times\n" in words
     assert words.splitlines()[-1] == "  divideropt run rough.yaml"
     assert "Traceback" not in words
