@@ -1,6 +1,6 @@
 """Kills campaigns at random moments and goes on with them: what is lost, and what comes out otherwise.
 
-    python benchmarks/kills.py [--kills 200] [--seed 1]
+    python benchmarks/kills.py [--kills 200] [--evaluations 3000] [--seed 1]
 
 Five campaigns on a model that does nothing but wait, one of each strategy and one of all four on two workers. Each is
 run once to its end. Then it is begun anew, the whole process group is killed (-9) at a random moment, and it is begun
@@ -39,10 +39,10 @@ parallel: {workers: 2, backend: BACKEND}
 """
 
 ONES = {
-    "nsga2": "nsga2: {population: 50, generations: 60}",
-    "genetic": "genetic: {population: 50, generations: 60}",
-    "complex": "complex: {points: 6, evaluations: 3000}",
-    "goal_attainment": "goal_attainment: {directions: 10, evaluations: 3000}",
+    "nsga2": "nsga2: {population: 50, generations: GENERATIONS}",
+    "genetic": "genetic: {population: 50, generations: GENERATIONS}",
+    "complex": "complex: {points: 6, evaluations: EVALUATIONS}",
+    "goal_attainment": "goal_attainment: {directions: 10, evaluations: EVALUATIONS}",
 }
 
 CAMPAIGNS = {name: (line, "sequential") for name, line in ONES.items()} | {
@@ -87,6 +87,7 @@ class Count:
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--kills", type=int, default=200, help="in all, over the five campaigns")
+    options.add_argument("--evaluations", type=int, default=3000, help="in each run")
     options.add_argument("--seed", type=int, default=1)
     given = options.parse_args()
     random = Random(given.seed)
@@ -94,10 +95,12 @@ def main() -> int:
     total = Count()
     print(f"{'campaign':16} kills  before any log  ends  rows compared  lost  cells different")
     for (name, (strategies, backend)), kills in zip(CAMPAIGNS.items(), share, strict=True):
+        text = TEXT.replace("STRATEGIES", strategies).replace("BACKEND", backend)
+        text = text.replace("GENERATIONS", str(given.evaluations // 50)).replace(
+            "EVALUATIONS", str(given.evaluations)
+        )
         with tempfile.TemporaryDirectory() as folder:
-            count = killed(
-                Path(folder), TEXT.replace("STRATEGIES", strategies).replace("BACKEND", backend), kills, random
-            )
+            count = killed(Path(folder), text, kills, random)
         say(name, count)
         for key in ("kills", "early", "ends", "checked", "lost", "different"):
             setattr(total, key, getattr(total, key) + getattr(count, key))

@@ -100,7 +100,7 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
     _say(_counted(done.front))
     _say(f"report: {write_report(done.store, logs=done.logs)}")
     if done.failures:
-        raise _incomplete(folder, done.failures, again)
+        raise _incomplete(folder, done.failures, len(done.logs), again)
 
 
 @commands.command()
@@ -304,11 +304,10 @@ def _counted(count: "Tally") -> str:
     return f"{words}; largest deviation: {largest}" if largest else words
 
 
-def _incomplete(folder: Path, failures: "Mapping[str, str]", again: str) -> IncompleteRunsError:
+def _incomplete(folder: Path, failures: "Mapping[str, str]", runs: int, again: str) -> IncompleteRunsError:
     reasons = "\n  ".join(f"{name}: {reason}" for name, reason in failures.items())
     return IncompleteRunsError(
-        f"{folder}: {len(failures)} of the runs are incomplete; the others are done, and fronts and report hold what "
-        f"was logged:\n  {reasons}\nTo try them again from their logs:\n  {again}"
+        f"{folder}: {len(failures)} of {runs} runs are incomplete; fronts and report hold what was logged:\n  {reasons}\nTo try them again from their logs:\n  {again}"
     )
 
 

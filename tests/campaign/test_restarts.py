@@ -1,6 +1,7 @@
 """A worker that is killed, hangs or breaks down costs its run time, and the others nothing."""
 
 import io
+import sys
 from pathlib import Path
 
 import pandas as pd
@@ -11,6 +12,7 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.mishaps import RESTARTS
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
+from divideropt.cli import main
 from divideropt.store import Store
 
 ONE = """  nsga2: {population: 12, generations: 2, seeds: [SEEDS]}
@@ -119,16 +121,8 @@ def test_a_share_of_a_batch_that_kills_its_process_is_done_again_singly(tmp_path
 def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on(
     calm, tmp_path, monkeypatch, backend
 ):
-    work = runner.work
     attempts = []
-
-    def broken(campaign, problem, folder, run, simulate=None):
-        if run.name == "nsga2-2":
-            attempts.append(run.name)
-            raise MemoryError("no room")
-        return work(campaign, problem, folder, run, simulate)
-
-    monkeypatch.setattr(runner, "work", broken)
+    monkeypatch.setattr(runner, "work", breaking(runner.work, attempts))
     workers = 4 if backend == "loky" else 1  # more than runs: batches are shared, and the runs driven from here
     done, words = run(tmp_path / "store", "begin: 2", backend, workers)
     assert len(attempts) == RESTARTS + 1
@@ -145,3 +139,45 @@ def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on
     done, _ = run(tmp_path / "store", "begin: 2", backend, workers)
     assert not done.failures
     assert_same(tmp_path / "store", calm)
+
+
+def test_the_command_says_which_runs_are_incomplete_and_ends_with_6(tmp_path, monkeypatch, capsys):
+    text = TEXT.replace("OPTIONS", "begin: 2").replace("DEADLINE", "").replace("WORKERS", "1")
+    (tmp_path / "rough.yaml").write_text(text.replace("BACKEND", "sequential"))
+    monkeypatch.chdir(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr(runner, "work", breaking(runner.work))
+        code, _, words = called(["run", "rough.yaml"], monkeypatch, capsys)
+    assert code == 6
+    assert "1 of 3 runs are incomplete" in words
+    assert "  nsga2-2: it broke down (MemoryError: no room), 4 times\n" in words
+    assert words.splitlines()[-1] == "  divideropt run rough.yaml"
+    assert "Traceback" not in words
+    store = tmp_path / "results" / "rough"
+    assert "Incomplete, given up: nsga2-2: it broke down" in (store / "report.html").read_text(encoding="utf-8")
+    code, said, _ = called(["status", "results/rough"], monkeypatch, capsys)
+    assert code == 0
+    assert "nsga2-2: 0 of 60 evaluations" in said
+    assert "\n  incomplete, given up: it broke down (MemoryError: no room), 4 times\n" in said
+    assert called(["run", "rough.yaml"], monkeypatch, capsys)[0] == 0
+    assert "incomplete" not in called(["status", "results/rough"], monkeypatch, capsys)[1]
+
+
+def called(arguments, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["divideropt", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return left.value.code, *capsys.readouterr()
+
+
+def breaking(work, attempts=None):
+    """Let the run nsga2-2 break down each time."""
+
+    def broken(campaign, problem, folder, run, simulate=None):
+        if run.name == "nsga2-2":
+            if attempts is not None:
+                attempts.append(run.name)
+            raise MemoryError("no room")
+        return work(campaign, problem, folder, run, simulate)
+
+    return broken

@@ -33,7 +33,7 @@ parallel: PARALLEL
 @pytest.fixture(scope="module", name="cluster")
 def _cluster():
     """A scheduler and two worker processes, on loopback."""
-    options = {"dashboard_address": None, "silence_logs": 50, "host": "127.0.0.1"}
+    options = {"dashboard_address": "127.0.0.1:0", "silence_logs": 50, "host": "127.0.0.1"}
     with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, **options) as cluster:
         yield cluster
 

@@ -4,7 +4,7 @@ import os
 import secrets
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,6 +17,9 @@ T = TypeVar("T")
 
 CONNECT_SECONDS = 10.0
 """How long the scheduler, its first worker and the probe of the workers are waited for [s]."""
+
+LOOK_SECONDS = 2.0
+"""How often a call looks whether the scheduler is still there [s]."""
 
 MOST_CALLS = 256
 """Calls at a time: each has a thread here, which waits."""
@@ -49,10 +52,15 @@ class DaskCrew(Crew):
             self._client.wait_for_workers(1, timeout=CONNECT_SECONDS)
         except (OSError, TimeoutError, ValueError) as error:
             raise UsageError(
+<<<<<<< HEAD
                 f"{scheduler}: no Dask scheduler with a worker answers ({type(error).__name__}: {error}); start "
                 "both, see docs/how-to/cluster.md, or mend parallel.scheduler"
+=======
+                f"{scheduler}: no scheduler with a worker answers ({type(error).__name__}: {error}); start both, "
+                "see docs/how-to/cluster.md, or mend parallel.scheduler"
+>>>>>>> i5-exec
             ) from None
-        self._lost = (distributed.scheduler.KilledWorker, distributed.CancelledError)
+        self._killed, self._cancelled = distributed.scheduler.KilledWorker, distributed.CancelledError
         try:
             super().__init__(min(self._fit_workers(scheduler, store.resolve()), MOST_CALLS))
         except BaseException:
@@ -61,14 +69,24 @@ class DaskCrew(Crew):
 
     def call(self, function: Callable[..., T], *arguments: object) -> T:
         """Have a function called by a worker; see `Crew.call`."""
+        self._check()
         future = self._client.submit(function, *arguments, pure=False)
         try:
+            while not _ended(future):
+                self._check()
             result: T = future.result()
-        except self._lost as error:
-            raise ProcessDiedError(f"the cluster gave it up ({type(error).__name__})") from error
+        except self._killed as error:
+            raise ProcessDiedError("Dask gave it up, since worker after worker died of it", final=True) from error
+        except self._cancelled as error:
+            raise ProcessDiedError("Dask dropped it") from error
         finally:
             future.release()
         return result
+
+    def _check(self) -> None:
+        """Wait no longer where nobody answers: what is submitted to a client that has given up never ends."""
+        if self._client.status in {"closing", "closed"}:
+            raise ProcessDiedError("the scheduler was lost", final=True)
 
     def close(self) -> None:
         """Leave the cluster; its workers drop what they do for this client."""
@@ -105,6 +123,13 @@ class DaskCrew(Crew):
                     "wrote a word); name a --store on a filesystem that all workers share, under the same path"
                 )
         return len(answers)
+
+
+def _ended(future: Any) -> bool:
+    """Wait a little for a task, and say whether it has come to some end."""
+    with suppress(TimeoutError):
+        future.result(timeout=LOOK_SECONDS)
+    return bool(future.done())
 
 
 def on_cluster() -> bool:

@@ -27,7 +27,16 @@ _ONE_THREAD = dict.fromkeys(
 
 
 class ProcessDiedError(Exception):
-    """A worker process died of what it was to do; how."""
+    """A worker process died of what it was to do; how.
+
+    Attributes:
+        final: Whether others died of it before, and it is not worth a further attempt.
+    """
+
+    def __init__(self, how: str, *, final: bool = False) -> None:
+        """Say how."""
+        super().__init__(how)
+        self.final = final
 
 
 class Crew(ABC):
@@ -62,8 +71,9 @@ class Crew(ABC):
         for _ in range(RESTARTS):
             try:
                 return self.call(function, *arguments)
-            except ProcessDiedError:
-                continue
+            except ProcessDiedError as died:
+                if died.final:
+                    raise
         return self.call(function, *arguments)
 
     def map(self, function: Callable[..., T], tasks: Iterable[tuple[Any, ...]]) -> Iterator[T]:

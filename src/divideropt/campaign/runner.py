@@ -177,11 +177,14 @@ class Runner:
                 return attempt(run)
             except ProcessDiedError as died:
                 reason = str(died)
+                if died.final:
+                    break
             except Exception as error:  # a bug of ours, of a library or of a model, in this run alone
                 reason = f"it broke down ({type(error).__name__}: {error})"
             if self._interruption.heard:
                 return Ending(run.name, stopped=True)
-        reason = f"{reason}, {RESTARTS + 1} times"
+        else:
+            reason = f"{reason}, {RESTARTS + 1} times"
         Mishaps(self._store.status_folder, run.name).give_up(reason)
         display.say(f"{run.name}: given up: {reason}")
         return Ending(run.name, failure=reason)
@@ -205,7 +208,7 @@ class Runner:
         combined = combined_front(list(fronts.values()), problem, schema)
         wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
         written = verifier.verify(fronts | {"combined": combined}, wanted, crew)
-        if combined.num_rows == 0:
+        if combined.num_rows == 0 and not failures:
             raise NoFeasibleDesignError(
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
