@@ -52,13 +52,8 @@ class DaskCrew(Crew):
             self._client.wait_for_workers(1, timeout=CONNECT_SECONDS)
         except (OSError, TimeoutError, ValueError) as error:
             raise UsageError(
-<<<<<<< HEAD
-                f"{scheduler}: no Dask scheduler with a worker answers ({type(error).__name__}: {error}); start "
-                "both, see docs/how-to/cluster.md, or mend parallel.scheduler"
-=======
                 f"{scheduler}: no scheduler with a worker answers ({type(error).__name__}: {error}); start both, "
                 "see docs/how-to/cluster.md, or mend parallel.scheduler"
->>>>>>> i5-exec
             ) from None
         self._killed, self._cancelled = distributed.scheduler.KilledWorker, distributed.CancelledError
         try:
