@@ -301,7 +301,8 @@ def _counted(count: "Tally") -> str:
 def _incomplete(folder: Path, failures: "Mapping[str, str]", runs: int, again: str) -> IncompleteRunsError:
     reasons = "\n  ".join(f"{name}: {reason}" for name, reason in failures.items())
     return IncompleteRunsError(
-        f"{folder}: {len(failures)} of {runs} runs are incomplete; fronts and report hold what was logged:\n  {reasons}\nTo try them again from their logs:\n  {again}"
+        f"{folder}: {len(failures)} of {runs} runs are incomplete; fronts and report hold what was logged:\n"
+        f"  {reasons}\nTo try them again from their logs:\n  {again}"
     )
 
 
