@@ -171,7 +171,8 @@ def finish(process: "subprocess.Popen[str]") -> None:
 
 def tables(store: Path) -> dict[str, pd.DataFrame]:
     """Read the logs as anybody would; and the fronts once they are there."""
-    logs = {path.name: pd.read_parquet(path) for path in sorted((store / "evaluations").glob("[!.]*"))}
+    begun = sorted({part.parent for part in (store / "evaluations").glob("[!.]*/part-*.parquet")})
+    logs = {path.name: pd.read_parquet(path) for path in begun}
     return logs | {f"front {path.stem}": pd.read_parquet(path) for path in (store / "fronts").glob("*.parquet")}
 
 

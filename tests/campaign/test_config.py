@@ -303,8 +303,20 @@ MISTAKES = {
         [(14, 21, "most permitted is 256")],
     ),
     "unknown backend": (
-        ("strategies:", "parallel: {backend: dask}\nstrategies:"),
+        ("strategies:", "parallel: {backend: threads}\nstrategies:"),
         [(14, 21, "loky, sequential")],
+    ),
+    "dask without its scheduler": (
+        ("strategies:", "parallel: {backend: dask}\nstrategies:"),
+        [(14, 11, "add scheduler: tcp://host:port")],
+    ),
+    "scheduler without dask": (
+        ("strategies:", "parallel: {scheduler: 'tcp://a:1'}\nstrategies:"),
+        [(14, 11, "a scheduler is for backend dask, not loky")],
+    ),
+    "scheduler that is no address": (
+        ("strategies:", "parallel: {backend: dask, scheduler: node1}\nstrategies:"),
+        [(14, 38, "'node1' is not the address of a scheduler; write tcp://host:port")],
     ),
     "parallel is no mapping": (("strategies:", "parallel: 2\nstrategies:"), [(14, 11, "2 is not a mapping")]),
 }

@@ -8,11 +8,13 @@ import pandas as pd
 import pytest
 
 from divideropt.campaign import runner
+from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.mishaps import RESTARTS
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
 from divideropt.cli import main
+from divideropt.errors import FileMistakes
 from divideropt.store import Store
 
 ONE = """  nsga2: {population: 12, generations: 2, seeds: [SEEDS]}
@@ -181,3 +183,18 @@ def breaking(work, attempts=None):
         return work(campaign, problem, folder, run, simulate)
 
     return broken
+
+
+def test_deadline_and_scheduler_come_back_from_a_stored_campaign():
+    text = TEXT.replace("OPTIONS", "begin: 2").replace("DEADLINE", ", deadline: 2 min").replace("WORKERS", "2")
+    campaign = parse_campaign(text.replace("BACKEND", 'dask, scheduler: "tcp://node1:8786"'))
+    again = parse_campaign(dump_campaign(campaign))
+    assert again == campaign
+    assert (again.model.deadline, again.parallel.scheduler) == (120.0, "tcp://node1:8786")
+
+
+@pytest.mark.parametrize("deadline", ["60", "0 s", "-1 s", "1 m"])
+def test_a_deadline_is_a_time_above_0(deadline):
+    text = TEXT.replace("OPTIONS", "begin: 2").replace("DEADLINE", f", deadline: {deadline}").replace("WORKERS", "2")
+    with pytest.raises(FileMistakes, match=r"campaign:3:\d+: model\.deadline: "):
+        parse_campaign(text.replace("BACKEND", "loky"))
