@@ -138,4 +138,4 @@ def test_an_overlarge_campaign_of_a_store_is_refused(store, call):
     for command in ("status", "report", "verify"):
         code, said = call(command, str(store))
         assert code == 4
-        assert "larger than 1 MiB" in said
+        assert "larger than 4 MiB" in said

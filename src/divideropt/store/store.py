@@ -90,7 +90,7 @@ class Store:
             raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
         try:
             if self.campaign_path.stat().st_size > LARGEST_CAMPAIGN:
-                raise self._campaign_damaged(f"larger than {LARGEST_CAMPAIGN} bytes")
+                raise self._campaign_damaged(f"larger than {LARGEST_CAMPAIGN // 2**20} MiB")
             content = self.campaign_path.read_bytes()
         except OSError as error:
             raise self._campaign_damaged(str(error.strerror)) from error
