@@ -16,6 +16,7 @@ from divideropt.campaign.status import read_status
 from divideropt.cli import main
 from divideropt.errors import FileMistakes
 from divideropt.store import Store
+from stores import assert_same, logs
 
 ONE = """  nsga2: {population: 12, generations: 2, seeds: [SEEDS]}
 """
@@ -40,17 +41,6 @@ def run(folder: Path, options: str, backend="loky", workers=2, deadline="", text
     text = text.replace("OPTIONS", options).replace("DEADLINE", deadline and f", deadline: {deadline}")
     campaign = parse_campaign(text.replace("BACKEND", backend).replace("WORKERS", str(workers)))
     return Runner(campaign, folder, workers, words).run(), words.getvalue()
-
-
-def logs(folder: Path) -> dict[str, pd.DataFrame]:
-    return {p.name: pd.read_parquet(p) for p in sorted((folder / "evaluations").iterdir())}
-
-
-def assert_same(first: Path, second: Path) -> None:
-    one, other = logs(first), logs(second)
-    assert list(one) == list(other)
-    for name, table in one.items():
-        pd.testing.assert_frame_equal(table, other[name], check_exact=True)
 
 
 @pytest.fixture(scope="module", name="calm")

@@ -12,6 +12,7 @@ from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError, StoreError, UsageError
 from divideropt.models.divider import Divider
 from divideropt.store import RunLog, Store, TableSchema, fingerprint
+from stores import assert_same, tables
 from toy_model import toy_problem
 
 TEXT = """
@@ -36,18 +37,6 @@ def run(folder: Path, text: str = TEXT, workers: int = 1, backend: str = "sequen
     words = io.StringIO()
     campaign = parse_campaign(text.replace("BACKEND", backend))
     return Runner(campaign, folder, workers, words).run(**options), words.getvalue()
-
-
-def tables(folder: Path) -> dict[str, pd.DataFrame]:
-    found = {f"front {p.stem}": pd.read_parquet(p) for p in sorted((folder / "fronts").glob("*.parquet"))}
-    return found | {f"log {p.name}": pd.read_parquet(p) for p in sorted((folder / "evaluations").iterdir())}
-
-
-def assert_same(first: Path, second: Path) -> None:
-    one, other = tables(first), tables(second)
-    assert list(one) == list(other)
-    for name, table in one.items():
-        pd.testing.assert_frame_equal(table, other[name], check_exact=True)
 
 
 @pytest.fixture(scope="module", name="whole")

@@ -16,6 +16,7 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
 from divideropt.store import Store
+from stores import assert_same, tables
 
 TEXT = """
 name: rough
@@ -54,22 +55,6 @@ def written(parallel, options="begin: 2", deadline="", seeds="[1, 2]", generatio
 def run(folder: Path, text: str):
     campaign, words = parse_campaign(text), io.StringIO()
     return Runner(campaign, folder, campaign.parallel.workers, words).run(), words.getvalue()
-
-
-def tables(folder: Path) -> dict[str, pd.DataFrame]:
-    found = {f"front {p.stem}": pd.read_parquet(p) for p in sorted((folder / "fronts").glob("*.parquet"))}
-    return found | {f"log {p.name}": pd.read_parquet(p) for p in sorted((folder / "evaluations").iterdir())}
-
-
-def assert_same(first: Path, second: Path) -> None:
-    one, other = tables(first), tables(second)
-    assert list(one) == list(other)
-    for name, table in one.items():
-        assert list(table.columns) == list(other[name].columns)
-        for column in table.columns:
-            mine, its = table[column].to_numpy(), other[name][column].to_numpy()
-            same = mine.tolist() == its.tolist() if mine.dtype == object else mine.tobytes() == its.tobytes()
-            assert same, (name, column)
 
 
 @pytest.fixture(scope="module", name="calm")
