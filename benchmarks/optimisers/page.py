@@ -1,0 +1,105 @@
+"""The contest's part of docs/benchmarks.md: what was played and how, the tables, the picture."""
+
+import os
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import pandas as pd
+
+from . import tables
+from .cases import VALVE
+from .contest import Contest
+from .measures import DIRECTIONS
+from .recorder import CEILING
+
+BEGIN, END = "<!-- optimisers: written by python -m benchmarks.optimisers -->", "<!-- optimisers: end -->"
+
+PACKAGES = ("pygmo", "platypus-opt", "jmetalpy", "optuna", "pymoo", "moocore", "numpy", "scipy")
+
+
+def section(contest: Contest, values: pd.DataFrame, command: str, pictures: Sequence[str]) -> str:
+    """Write the part.
+
+    Args:
+        contest: What was played.
+        values: Its numbers.
+        command: What wrote it.
+        pictures: Paths from the page, the light one first; or none.
+
+    Returns:
+        Markdown, between `BEGIN` and `END`.
+    """
+    parts = [BEGIN, "## Optimisers against other packages", *_preface(contest, values, command)]
+    parts += ["### Players", tables.players_table(contest)]
+    if VALVE in contest.cases:
+        parts += ["### The valve", *_picture(pictures), *tables.valve_tables(contest, values)]
+        if not DIRECTIONS.exists():
+            parts.append(f"λ over the goal directions is not measured: `{DIRECTIONS.name}`, their optima, is missing.")
+    parts += ["### Problems with known fronts", *tables.known_tables(contest, values), END]
+    return "\n\n".join(parts) + "\n"
+
+
+def put(part: str, page: Path) -> None:
+    """Write the part into a page, in the place of the former one, or at its end."""
+    text = page.read_text("utf-8") if page.exists() else "# Benchmarks\n\n"
+    before, _, rest = text.partition(BEGIN)
+    after = rest.partition(END)[2].lstrip("\n")
+    page.write_text(before.rstrip("\n") + "\n\n" + part + ("\n" + after if after else ""), "utf-8")
+
+
+def _preface(contest: Contest, values: pd.DataFrame, command: str) -> list[str]:
+    known = [name for name in contest.cases if name != VALVE]
+    seeds, known_seeds = _range(contest.seeds), _range(contest.known_seeds)
+    parts = [
+        f"`{command}` makes the runs that are missing in `results/benchmarks/optimisers` and writes this section.",
+        f"Seeds {seeds} on the valve, {known_seeds} on {', '.join(known)}. Every evaluation of every player is kept, and the"
+        " archive of all of them is measured, not what the player returns; its feasible points alone count. Players are"
+        " told the same objectives and constraints; pygmo, which has no constraints, is told of an infeasible design the"
+        " same large number and its violation in each objective, so that Deb's rule holds by dominance. Objectives are told"
+        " to the peers in parts of the known front's extent, on the valve in parts of the reference point.",
+        f"Time is the processor's, of one thread, for the player and its evaluations, compiling left out; on a machine with"
+        f" nothing else to do it is the wall's. Equal time is the champion's median for {contest.marks[-1]:,} evaluations;"
+        f" a peer has by then as many evaluations as it manages, {CEILING:,} at most. A player with a most has no more.",
+        "Objectives are normalised by the known front's ideal and nadir, reference point 1.1; on the valve by the origin and"
+        " the reference point of the campaign. The best 500 points are what is left when the point of least hypervolume"
+        " contribution is taken away again and again. The known fronts of TNK, OSY, Truss2D and DTLZ7 and the volumes of"
+        " DTLZ1, 2 and 7 are computed in `benchmarks/optimisers/fronts.py`, the others are pymoo's, densely sampled.",
+    ]
+    if known and not values.empty:
+        parts.append(
+            f"The greatest hypervolume that any run found on these is {tables.beyond(values) * 100:.3f} % of the known front's."
+        )
+    parts.append(f"{_machine()}; {_versions()}.")
+    return parts
+
+
+def _picture(pictures: Sequence[str]) -> list[str]:
+    if not pictures:
+        return []
+    light, dark = pictures
+    words = "what each player lacks of the hypervolume, over evaluations and seconds"
+    return [
+        f'<picture><source media="(prefers-color-scheme: dark)" srcset="{dark}"><img alt="{words}" src="{light}"></picture>',
+        "What is lacking of the hypervolume of all runs' archives together: medians, with the band between the quartiles.",
+    ]
+
+
+def _range(seeds: Sequence[int]) -> str:
+    return f"{seeds[0]}–{seeds[-1]}" if len(seeds) > 1 else f"{seeds[0]}"
+
+
+def _machine() -> str:
+    return f"{os.cpu_count()} cores ({platform.machine()}), Python {platform.python_version()}"
+
+
+def _versions() -> str:
+    return ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "(not installed)"
