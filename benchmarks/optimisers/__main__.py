@@ -26,7 +26,12 @@ FIRST_SEED = 2001
 """Seeds from here on were not looked at while the strategies were made."""
 
 QUICK = Contest(
-    ROOT / "results" / "benchmarks" / "optimisers-quick", ("ZDT1", "TNK", VALVE), (1, 2, 3), (1, 2, 3), (200, 1_000, 2_000), 10_000
+    ROOT / "results" / "benchmarks" / "optimisers-quick",
+    ("ZDT1", "TNK", VALVE),
+    (1, 2, 3),
+    (1, 2, 3),
+    (200, 1_000, 2_000),
+    10_000,
 )
 """What `--quick` plays, with seeds that decide nothing."""
 

@@ -81,8 +81,14 @@ def _known(
     problem = problem_of(formula, np.abs(front).max(axis=0))
     case = Case(name, problem, ideal, span, fronts.CORNER)
     volume = case.hypervolume(case.normalised(front)) if volume_of is None else volume_of(ideal, span)
-    few = front if front.shape[1] > 2 else front[np.argsort(front[:, 0])][:: max(1, len(front) // FRONT_POINTS)]
+    few = front if front.shape[1] > 2 else _thinned(front)
     return Case(name, problem, ideal, span, fronts.CORNER, case.normalised(few), volume)
+
+
+def _thinned(curve: FloatArray) -> FloatArray:
+    """Return some points of a front that is a curve, its ends among them."""
+    rows = np.linspace(0, len(curve) - 1, FRONT_POINTS).astype(int)
+    return np.asarray(curve[np.argsort(curve[:, 0])][rows])
 
 
 def _valve() -> Case:

@@ -21,6 +21,9 @@ from .runs import Run, make, read
 POINTS = 28
 """Of an anytime curve."""
 
+SPAN = 50.0
+"""Its last second over its first."""
+
 FIRST = 50
 """Evaluations at which it begins."""
 
@@ -105,7 +108,7 @@ class Contest:
         state = _state_of_sources()
         found = Parallel(n_jobs=self.workers)(
             delayed(measure)(
-                run, self.folder, self.equal_time(run.case), (*self.marks, self.plain_evaluations),
+                run, self.folder, self._time_for(run), (*self.marks, self.plain_evaluations),
                 state, run.path(self.folder).stat().st_mtime_ns,
             )
             for run in self.there()
@@ -119,23 +122,30 @@ class Contest:
             Evaluations, seconds, and by player the hypervolumes at these, each of shape (seeds, POINTS).
         """
         counts = np.unique(np.geomspace(FIRST, self.marks[-1], POINTS).astype(int))
-        seconds = np.geomspace(self.equal_time(case) / 100.0, self.equal_time(case), POINTS)
+        seconds = np.geomspace(self.equal_time(case) / SPAN, self.equal_time(case), POINTS)
         of: dict[str, list[tuple[FloatArray, FloatArray]]] = {}
         for run in self.there():
             if run.case == case:
                 archive = read(run, self.folder)
-                of.setdefault(run.player, []).append(history(case_of(case), archive, counts.tolist(), seconds.tolist()))
+                of.setdefault(run.player, []).append(
+                    history(case_of(case), archive, counts.tolist(), seconds.tolist())
+                )
         curves = {
             player: (np.array([h[0] for h in found]), np.array([h[1] for h in found])) for player, found in of.items()
         }
         return counts.astype(np.float64), seconds, curves
+
+    def _time_for(self, run: Run) -> float:
+        return self.equal_time(run.case) if self.players[run.player].most is None else np.inf
 
     def _run(self, case: str, player: str, seed: int, seconds: float = 0.0) -> Run:
         plain = case == VALVE and player == PLAIN
         return Run(case, player, seed, self.plain_evaluations if plain else self.marks[-1], seconds)
 
 
-def _values(run: Run, folder: Path, seconds: float, marks: Sequence[int], state: str, changed: int) -> list[dict[str, object]]:
+def _values(
+    run: Run, folder: Path, seconds: float, marks: Sequence[int], state: str, changed: int
+) -> list[dict[str, object]]:
     """Measure a run; the last two arguments say which code and which file, for the cache."""
     name = {"case": run.case, "player": run.player, "seed": run.seed}
     return [{**name, **asdict(value)} for value in measured(case_of(run.case), read(run, folder), seconds, marks)]

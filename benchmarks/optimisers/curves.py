@@ -1,5 +1,6 @@
 """Anytime curves of the valve as pictures, for a light and for a dark page: plotly's, as Chromium draws them."""
 
+import math
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -25,8 +26,8 @@ DARK_COLOURS = ("#4a9fe0", "#f07f35", "#2cc39a", "#e39bc4", "#f0b93c", "#9ad6f7"
 BAND = 0.16
 """Opacity of a quartile band."""
 
-LEAST = 0.02
-"""Least deficit drawn [%]."""
+LEAST, MOST = 0.02, 30.0
+"""Deficits drawn [%]."""
 
 Curves = tuple[FloatArray, FloatArray, Mapping[str, tuple[FloatArray, FloatArray]]]
 """See `Contest.histories`."""
@@ -72,11 +73,17 @@ def _figure(curves: Curves, best: float, kind: str) -> Any:
                 quartiles = np.quantile(lacking[:, complete], [0.25, 0.5, 0.75], axis=0)
                 for trace in _traces(player, x[complete], quartiles, colour, dash, first=place == 0):
                     fig.add_trace(trace.update(showlegend=trace.showlegend and column == 1), 1, column)
-    axis = {"type": "log", "gridcolor": grid, "linecolor": grid, "zeroline": False}
-    fig.update_xaxes(**axis)
+    axis = {
+        "type": "log",
+        "gridcolor": grid,
+        "linecolor": grid,
+        "zeroline": False,
+        "minor": {"ticks": "inside", "tickcolor": grid},
+    }
+    fig.update_xaxes(**axis, dtick=1)
     fig.update_xaxes(title_text="evaluations", col=1)
     fig.update_xaxes(title_text="seconds of the processor", col=2)
-    fig.update_yaxes(**axis)
+    fig.update_yaxes(**axis, dtick=1, range=[math.log10(LEAST), math.log10(MOST)])
     fig.update_yaxes(title_text="hypervolume lacking [%]", col=1)
     fig.update_layout(
         width=WIDTH, height=HEIGHT, paper_bgcolor=paper, plot_bgcolor=paper, font={"color": ink, "size": 14},

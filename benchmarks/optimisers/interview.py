@@ -29,8 +29,8 @@ class Interview:
     def penalised(self, designs: FloatArray) -> FloatArray:
         """Answer with objectives alone, shape (n, k).
 
-        All objectives of an infeasible design are the same, `BEYOND` and the sum of its violations. Any feasible design
-        dominates it, and of two infeasible ones the less violated dominates: Deb's rule by dominance alone.
+        All objectives of an infeasible design are the same, `BEYOND` and the sum of its violations. Any feasible
+        design dominates it, and of two infeasible ones the less violated dominates: Deb's rule by dominance alone.
         """
         told = self(designs)
         return np.where(told.feasible[:, None], told.F, BEYOND + told.violation[:, None])

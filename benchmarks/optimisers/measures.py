@@ -59,22 +59,24 @@ def measured(case: Case, archive: Archive, seconds: float, marks: Sequence[int] 
     Args:
         case: On what it was found.
         archive: What was found.
-        seconds: Equal time [s].
+        seconds: Equal time [s], infinite for a player that is not compared at it.
         marks: Evaluations; those that the archive does not reach are left out.
 
     Yields:
         The numbers.
     """
-    reached = [(str(mark), archive.until(mark)) for mark in marks if mark <= archive.evaluations]
-    if archive.ended >= seconds:
+    reached = [(str(mark), archive.until(mark)) for mark in marks if archive.reaches(mark)]
+    if np.isfinite(seconds) and archive.lasts(seconds):
         reached.append((TIME, archive.until_second(seconds)))
         yield Value(COUNT, TIME, archive.evaluations_by(seconds))
     for mark, F in reached:
         points = case.normalised(F)
         points = points[moocore.is_nondominated(points)] if len(points) else points
         yield Value(HV, mark, case.hypervolume(points) / (case.volume or 1.0))
-        if mark != TIME and int(mark) <= MARKS[-1]:  # it takes seconds
-            yield Value(HV_BEST, mark, case.hypervolume(best_subset(points, BEST, case.corner)) / (case.volume or 1.0))
+        if mark != TIME and BEST < int(mark) <= MARKS[-1]:  # it takes seconds
+            yield Value(
+                HV_BEST, mark, case.hypervolume(best_subset(points, BEST, case.corner)) / (case.volume or 1.0)
+            )
         if case.front is not None:
             yield Value(IGD, mark, igd_plus(points, case.front))
         if case.name == VALVE and DIRECTIONS.exists():
@@ -92,12 +94,10 @@ def history(
         Shapes (len(evaluations),) and (len(seconds),).
     """
     by_count = [
-        case.hypervolume(case.normalised(archive.until(n))) if n <= archive.evaluations else np.nan
-        for n in evaluations
+        case.hypervolume(case.normalised(archive.until(n))) if archive.reaches(n) else np.nan for n in evaluations
     ]
     by_time = [
-        case.hypervolume(case.normalised(archive.until_second(s))) if s <= archive.ended else np.nan
-        for s in seconds
+        case.hypervolume(case.normalised(archive.until_second(s))) if archive.lasts(s) else np.nan for s in seconds
     ]
     return np.array(by_count), np.array(by_time)
 
@@ -121,7 +121,7 @@ def best_subset(points: FloatArray, size: int, corner: float) -> FloatArray:
 
 
 def igd_plus(points: FloatArray, front: FloatArray) -> float:
-    """Return the mean over the front's points of how far the nearest found point is behind (Ishibuchi et al. 2015)."""
+    """Return the mean over the front's points of how far the nearest point lags (Ishibuchi et al. 2015)."""
     return float(moocore.igd_plus(points, ref=front)) if len(points) else np.inf
 
 

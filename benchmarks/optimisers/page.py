@@ -36,8 +36,12 @@ def section(contest: Contest, values: pd.DataFrame, command: str, pictures: Sequ
     if VALVE in contest.cases:
         parts += ["### The valve", *_picture(pictures), *tables.valve_tables(contest, values)]
         if not DIRECTIONS.exists():
-            parts.append(f"λ over the goal directions is not measured: `{DIRECTIONS.name}`, their optima, is missing.")
-    parts += ["### Problems with known fronts", *tables.known_tables(contest, values), END]
+            parts.append(
+                f"λ over the goal directions is not measured: `{DIRECTIONS.name}`, their optima, is missing."
+            )
+    if set(contest.cases) != {VALVE}:
+        parts += ["### Problems with known fronts", *tables.known_tables(contest, values)]
+    parts.append(END)
     return "\n\n".join(parts) + "\n"
 
 
@@ -51,28 +55,40 @@ def put(part: str, page: Path) -> None:
 
 def _preface(contest: Contest, values: pd.DataFrame, command: str) -> list[str]:
     known = [name for name in contest.cases if name != VALVE]
-    seeds, known_seeds = _range(contest.seeds), _range(contest.known_seeds)
-    parts = [
-        f"`{command}` makes the runs that are missing in `results/benchmarks/optimisers` and writes this section.",
-        f"Seeds {seeds} on the valve, {known_seeds} on {', '.join(known)}. Every evaluation of every player is kept, and the"
-        " archive of all of them is measured, not what the player returns; its feasible points alone count. Players are"
-        " told the same objectives and constraints; pygmo, which has no constraints, is told of an infeasible design the"
-        " same large number and its violation in each objective, so that Deb's rule holds by dominance. Objectives are told"
-        " to the peers in parts of the known front's extent, on the valve in parts of the reference point.",
-        f"Time is the processor's, of one thread, for the player and its evaluations, compiling left out; on a machine with"
-        f" nothing else to do it is the wall's. Equal time is the champion's median for {contest.marks[-1]:,} evaluations;"
-        f" a peer has by then as many evaluations as it manages, {CEILING:,} at most. A player with a most has no more.",
-        "Objectives are normalised by the known front's ideal and nadir, reference point 1.1; on the valve by the origin and"
-        " the reference point of the campaign. The best 500 points are what is left when the point of least hypervolume"
-        " contribution is taken away again and again. The known fronts of TNK, OSY, Truss2D and DTLZ7 and the volumes of"
-        " DTLZ1, 2 and 7 are computed in `benchmarks/optimisers/fronts.py`, the others are pymoo's, densely sampled.",
+    greatest = tables.beyond(values) * 100.0 if known else 0.0
+    found = f"The greatest hypervolume that any run found there is {greatest:.3f} % of the known front's."
+    return [
+        HOW.format(
+            command=command,
+            folder=contest.folder.name,
+            seeds=_seeds(contest, known),
+            mark=contest.marks[-1],
+            ceiling=CEILING,
+            found=found if known else "",
+        ),
+        f"{_machine()}; {_versions()}.",
     ]
-    if known and not values.empty:
-        parts.append(
-            f"The greatest hypervolume that any run found on these is {tables.beyond(values) * 100:.3f} % of the known front's."
-        )
-    parts.append(f"{_machine()}; {_versions()}.")
-    return parts
+
+
+HOW = """\
+`{command}` makes the runs that are missing in `results/benchmarks/{folder}` and writes this section.
+Seeds {seeds}.
+
+- Every evaluation of every player is kept, and the archive of all of them is measured, not what the player
+  returns; only feasible designs count.
+- All are told the same objectives and constraints; peers have the objectives in parts of the known front's
+  extent, on the valve in parts of the reference point. pygmo has no constraints: of an infeasible design it is
+  told 10⁴ and the sum of the violations in each objective, so that Deb's rule holds by dominance alone.
+- Time is the processor's, of one thread, for the player and its evaluations, without compiling: the wall's, on
+  a machine with nothing else to do. Equal time is the champion's median for {mark:,} evaluations; the others
+  have by then as many as they manage, {ceiling:,} at most. Players that are given fewer evaluations, since they
+  are slow, are not compared at equal time.
+- Objectives are normalised by the known front's ideal and nadir, with the reference point 1.1; on the valve by
+  the origin and the campaign's reference point.
+- The best 500 points are what is left when the point that contributes least to the hypervolume is taken away,
+  again and again.
+- The known fronts of TNK, OSY, Truss2D and DTLZ7, and the volumes of DTLZ1, 2 and 7, are computed in
+  `benchmarks/optimisers/fronts.py`; the other fronts are pymoo's, densely sampled. {found}"""
 
 
 def _picture(pictures: Sequence[str]) -> list[str]:
@@ -80,10 +96,16 @@ def _picture(pictures: Sequence[str]) -> list[str]:
         return []
     light, dark = pictures
     words = "what each player lacks of the hypervolume, over evaluations and seconds"
+    source = f'<source media="(prefers-color-scheme: dark)" srcset="{dark}">'
     return [
-        f'<picture><source media="(prefers-color-scheme: dark)" srcset="{dark}"><img alt="{words}" src="{light}"></picture>',
-        "What is lacking of the hypervolume of all runs' archives together: medians, with the band between the quartiles.",
+        f'<picture>{source}<img alt="{words}" src="{light}"></picture>',
+        "What is lacking of the hypervolume of all runs' archives together: medians, bands between the quartiles.",
     ]
+
+
+def _seeds(contest: Contest, known: Sequence[str]) -> str:
+    on_valve = [f"{_range(contest.seeds)} on the valve"] if VALVE in contest.cases else []
+    return "; ".join(on_valve + ([f"{_range(contest.known_seeds)} on {', '.join(known)}"] if known else []))
 
 
 def _range(seeds: Sequence[int]) -> str:

@@ -19,6 +19,8 @@ UNENDING = 10**9
 OURS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
         "memetic": {"evaluations": UNENDING},
+        "nsga3": {"population": 100, "generations": UNENDING, "directions": 91},
+        "sms_emoa": {"population": 100, "generations": UNENDING},
         "goal_attainment": {"directions": 91, "evaluations": UNENDING},
         "nsga2": {"population": 100, "generations": UNENDING},
     }

@@ -24,8 +24,8 @@ class Recorder:
     """Answers a player, and keeps what it asked, in the order in which it did.
 
     A run ends when it has had so many evaluations and so many seconds. A batch that would exceed the evaluations is
-    answered as far as they go, and then the run ends. Seconds are those of the processor since it was made, of the player
-    and of its evaluations: every player has one thread, and what else runs on the machine does not count.
+    answered as far as they go, and then the run ends. Seconds are those of the processor since it was made, of the
+    player and of its evaluations: every player has one thread, and what else runs on the machine does not count.
     """
 
     def __init__(self, problem: Problem, evaluations: int, seconds: float = 0.0) -> None:
@@ -55,15 +55,15 @@ class Recorder:
             raise RunOverError
         return told
 
-    def archive(self) -> "Archive":
-        """Return what was found."""
+    def archive(self, finished: bool = False) -> "Archive":
+        """Return what was found, and whether the player has `finished` by itself."""
         ended, k = self.elapsed(), len(self._problem.objectives)
         F = np.concatenate([np.empty((0, k)), *(told.F for told in self._told)])
         feasible = np.concatenate([np.empty(0, dtype=bool), *(told.feasible for told in self._told)])
         seconds = np.concatenate([np.empty(0), *self._stamps])
         rows = np.flatnonzero(feasible)
         rows = rows[entering(F[rows])]
-        return Archive(rows + 1, seconds[rows], F[rows], seconds, ended)
+        return Archive(rows + 1, seconds[rows], F[rows], seconds, ended, finished)
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,7 @@ class Archive:
         F: Objectives, shape (n, k).
         stamps: When each evaluation of the run was answered [s], shape (evaluations,).
         ended: When the run ended [s].
+        finished: Whether the player ended it by itself; then what it found stands at any later mark.
     """
 
     order: np.ndarray[tuple[int], np.dtype[np.int64]]
@@ -83,11 +84,20 @@ class Archive:
     F: FloatArray
     stamps: FloatArray
     ended: float
+    finished: bool = False
 
     @property
     def evaluations(self) -> int:
         """How many the run had."""
         return len(self.stamps)
+
+    def reaches(self, evaluations: int) -> bool:
+        """Whether the run had so many evaluations, or needs no more."""
+        return self.finished or evaluations <= self.evaluations
+
+    def lasts(self, seconds: float) -> bool:
+        """Whether the run took so long, or needs or may have no more."""
+        return self.finished or seconds <= self.ended or self.evaluations >= CEILING
 
     def time_of(self, evaluations: int) -> float:
         """Return the seconds that the first so many evaluations took."""

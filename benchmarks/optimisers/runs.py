@@ -1,6 +1,7 @@
 """One player on one case with one seed, kept on disk, so that a benchmark goes on where it stopped."""
 
 import json
+import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,6 +18,9 @@ from divideropt.problem import one_thread
 from .cases import Case, case_of
 from .players import Player, players
 from .recorder import CEILING, Archive, Recorder, RunOverError
+
+TELLING = 20
+"""After so many runs a word is said."""
 
 WARMING = 2
 """Designs evaluated before a run's time begins, so that nobody pays for compiling."""
@@ -54,7 +58,12 @@ def make(runs: Sequence[Run], folder: Path, workers: int) -> int:
     """
     known = players()
     missing = [run for run in runs if not _sufficient(run, known[run.player], folder)]
-    Parallel(n_jobs=workers, batch_size=1)(delayed(_make)(run, folder) for run in missing)
+    made = Parallel(n_jobs=workers, batch_size=1, return_as="generator_unordered")(
+        delayed(_make)(run, folder) for run in missing
+    )
+    for count, run in enumerate(made, start=1):
+        if count % TELLING == 0 or count == len(missing):
+            print(f"{count} of {len(missing)} runs, {run.player} on {run.case} the last", file=sys.stderr)
     return len(missing)
 
 
@@ -76,9 +85,11 @@ def play(case: Case, player: Player, seed: int, evaluations: int, seconds: float
     with one_thread():
         case.problem.simulate(case.problem.space.sample(WARMING, np.random.default_rng(0)))
         recorder = Recorder(case.problem, evaluations, seconds)
+        finished = False
         with suppress(RunOverError):
             player.play(case.problem, recorder, seed, case.span)
-        return recorder.archive()
+            finished = True
+        return recorder.archive(finished)
 
 
 def read(run: Run, folder: Path) -> Archive:
@@ -86,13 +97,14 @@ def read(run: Run, folder: Path) -> Archive:
     table = pq.read_table(run.path(folder))
     stamps, entered, *columns = (table[name].to_numpy() for name in table.column_names)
     rows = np.flatnonzero(entered)
-    ended = float(_said(table.schema)["ended"])
-    return Archive(rows + 1, stamps[rows], np.column_stack([column[rows] for column in columns]), stamps, ended)
+    F, said = np.column_stack([column[rows] for column in columns]), _said(table.schema)
+    return Archive(rows + 1, stamps[rows], F, stamps, float(said["ended"]), bool(said["finished"]))
 
 
-def _make(run: Run, folder: Path) -> None:
+def _make(run: Run, folder: Path) -> Run:
     player, case = players()[run.player], case_of(run.case)
     _write(play(case, player, run.seed, run.evaluations, run.seconds), player.settings, run.path(folder))
+    return run
 
 
 def _write(archive: Archive, settings: str, path: Path) -> None:
@@ -104,10 +116,12 @@ def _write(archive: Archive, settings: str, path: Path) -> None:
         values = np.zeros(archive.evaluations)
         values[entered] = found
         columns[f"f{i}"] = pa.array(values, mask=~entered)
-    said = {"settings": settings, "ended": archive.ended}
+    said = {"settings": settings, "ended": archive.ended, "finished": archive.finished}
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_suffix(".part")
-    pq.write_table(pa.table(columns).replace_schema_metadata({_SAID: json.dumps(said)}), unfinished, compression="zstd")
+    pq.write_table(
+        pa.table(columns).replace_schema_metadata({_SAID: json.dumps(said)}), unfinished, compression="zstd"
+    )
     unfinished.replace(path)
 
 
@@ -118,6 +132,8 @@ def _sufficient(run: Run, player: Player, folder: Path) -> bool:
     said = _said(pq.read_schema(path))
     if said["settings"] != player.settings:
         return False
+    if said["finished"]:
+        return True
     count = pq.read_metadata(path).num_rows
     if player.most is not None:
         return bool(count >= min(run.evaluations, player.most))

@@ -26,13 +26,15 @@ def valve_tables(contest: Contest, values: pd.DataFrame) -> Iterator[str]:
     """Say how the players did on the valve: hypervolume, λ, and the rank tests."""
     of = values[values["case"] == VALVE]
     marks = [*map(str, contest.marks), TIME]
-    plain = of[(of["player"] == PLAIN) & (of["measure"] == HV) & (of["mark"] == str(contest.plain_evaluations))]["value"]
+    plain = of[(of["player"] == PLAIN) & (of["measure"] == HV) & (of["mark"] == str(contest.plain_evaluations))][
+        "value"
+    ]
     unit = float(plain.median())
     yield (
-        f"Hypervolume in % of that of plain NSGA-II after {contest.plain_evaluations:,} evaluations, {unit:.6f} of the box"
-        f" between the origin and the reference point of `divider.yaml`: median and quartiles over {len(contest.seeds)}"
-        f" seeds. Equal time is {contest.equal_time(VALVE):.2f} s, the champion's median for {contest.marks[-1]:,}"
-        " evaluations; beside it, how many evaluations the player had by then (median)."
+        f"Hypervolume in % of that of plain NSGA-II after {contest.plain_evaluations:,} evaluations, which\n"
+        f"is {unit:.6f} of the box between the origin and the reference point of `divider.yaml`: median\n"
+        f"and quartiles over {len(contest.seeds)} seeds. Equal time is {contest.equal_time(VALVE):.2f} s;\n"
+        "beside it, how many evaluations the player had by then (median)."
     )
     columns = [(HV, mark) for mark in marks] + [(HV_BEST, marks[-2])]
     heads = [*(_words(mark) for mark in marks), "evaluations", f"best 500 of {_words(marks[-2])}"]
@@ -43,17 +45,18 @@ def valve_tables(contest: Contest, values: pd.DataFrame) -> Iterator[str]:
     yield _table(["player", *heads], rows)
     if (of["measure"] == LAMBDA_MEAN).any():
         yield (
-            "λ over the goal directions: how far the best point of the archive lies above the direction's optimum [%], mean"
-            " over the directions / worst direction; medians over the seeds."
+            "λ over the goal directions: how far the best point of the archive lies above the direction's\n"
+            "optimum [%], mean over the directions / worst direction; medians over the seeds."
         )
-        rows = [
-            [_bold(player, contest), *(_pair(of, player, mark) for mark in marks)] for player in contest.players
-        ]
+        rows = [[_bold(player, contest), *(_pair(of, player, mark) for mark in marks)] for player in contest.players]
         yield _table(["player", *map(_words, marks)], rows)
-    tests = compared(contest, of, [m for m in SIGN if m != IGD])
+        lambdas = _pair(of, PLAIN, str(contest.plain_evaluations))
+        yield f"Plain NSGA-II after {contest.plain_evaluations:,} evaluations: {lambdas}."
+    tests = compared(contest, of)
     yield (
-        f"`{contest.champion}` against each: the chance A12 that one of its runs is better than one of the other's, and p of"
-        f" the rank-sum test, two-sided, Holm-corrected for all {len(tests)} tests on the valve."
+        f"`{contest.champion}` against each: the chance A12 that one of its runs is better than one of the\n"
+        f"other's, and p of the rank-sum test, two-sided, Holm-corrected for all {len(tests)} tests on the\n"
+        "valve."
     )
     for measure in SIGN:
         here = tests[tests["measure"] == measure]
@@ -70,15 +73,14 @@ def valve_tables(contest: Contest, values: pd.DataFrame) -> Iterator[str]:
 def known_tables(contest: Contest, values: pd.DataFrame) -> Iterator[str]:
     """Say how the players did on the test problems."""
     of = values[values["case"] != VALVE]
-    if of.empty:
-        return
-    tests = compared(contest, of, (HV, HV_BEST, IGD))
+    tests = compared(contest, of)
     names = [name for name in contest.players if (of["player"] == name).any()]
     yield (
-        f"Medians over {len(contest.known_seeds)} seeds. + where `{contest.champion}` is better than the player, − where it is"
-        f" worse (rank-sum test, two-sided, p < {SIGNIFICANT:g}, Holm-corrected for all {len(tests)} tests on these problems)."
+        f"Medians over {len(contest.known_seeds)} seeds. + where `{contest.champion}` is better than the\n"
+        f"player, − where it is worse (rank-sum test, two-sided, p < {SIGNIFICANT:g}, Holm-corrected for\n"
+        f"all {len(tests)} tests on these problems)."
     )
-    for measure, mark in [*((HV, str(m)) for m in contest.marks), (HV, TIME), (IGD, str(contest.marks[-1]))]:
+    for measure, mark in [*((m, str(mark)) for m in (HV, IGD) for mark in contest.marks), (HV, TIME)]:
         scale, digits = (100.0, 2) if measure == HV else (1.0, 4)
         words = "Hypervolume in % of the known front's" if measure == HV else "IGD+ of normalised objectives"
         yield f"{words}, {_words(mark)}{'' if mark == TIME else ' evaluations'}:"
@@ -88,14 +90,15 @@ def known_tables(contest: Contest, values: pd.DataFrame) -> Iterator[str]:
             if case != VALVE:
                 here = of[of["case"] == case]
                 cells = [
-                    _number(_sample(here, name, measure, mark) * scale, digits) + _verdict(tests, case, name, measure, mark)
+                    _number(_sample(here, name, measure, mark) * scale, digits)
+                    + _verdict(tests, case, name, measure, mark)
                     for name in shown
                 ]
                 rows.append([case, *cells])
         yield _table(["problem", *(_bold(name, contest) for name in shown)], rows)
     yield f"How often `{contest.champion}` is better / not told apart / worse, over the problems:"
     marks = [*map(str, contest.marks), TIME]
-    columns = [(measure, mark) for measure in (HV, HV_BEST, IGD) for mark in marks if (measure, mark) != (HV_BEST, TIME)]
+    columns = [(measure, mark) for measure in (HV, IGD) for mark in marks] + [(HV_BEST, marks[-2])]
     rows = [
         [name, *(_score(tests, name, *column) for column in columns)] for name in names if name != contest.champion
     ]
@@ -117,7 +120,7 @@ def players_table(contest: Contest) -> str:
     return _table(["player", "settings", "problems", "most evaluations"], rows)
 
 
-def compared(contest: Contest, of: pd.DataFrame, measures: Sequence[str]) -> pd.DataFrame:
+def compared(contest: Contest, of: pd.DataFrame) -> pd.DataFrame:
     """Test the champion against each other player, by case, measure and mark; p corrected for all of these tests.
 
     Returns:
@@ -125,8 +128,9 @@ def compared(contest: Contest, of: pd.DataFrame, measures: Sequence[str]) -> pd.
     """
     found = []
     marks = [*map(str, contest.marks), TIME]
-    chosen = of[of["measure"].isin(measures) & of["mark"].isin(marks)]
-    for (case, measure, mark), group in chosen.groupby(["case", "measure", "mark"], sort=False):
+    chosen = of[of["measure"].isin(list(SIGN)) & of["mark"].isin(marks)]
+    for key, group in chosen.groupby(["case", "measure", "mark"], sort=False):
+        case, measure, mark = map(str, key)
         samples = {player: rows["value"].to_numpy() for player, rows in group.groupby("player")}
         ours = samples.pop(contest.champion, np.empty(0))
         for player, theirs in samples.items():
@@ -168,7 +172,11 @@ def _test(tests: pd.DataFrame, case: str, player: str, measure: str, mark: str) 
 
 def _test_cell(here: pd.DataFrame, player: str, mark: str) -> str:
     row = here[(here["player"] == player) & (here["mark"] == mark)]
-    return "" if row.empty else f"{row['a12'].iloc[0]:.2f}, {row['p'].iloc[0]:.0e}"
+    return "" if row.empty else f"{row['a12'].iloc[0]:.2f}, {_p(row['p'].iloc[0])}"
+
+
+def _p(p: float) -> str:
+    return f"{p:.0e}" if p < 1e-3 else f"{p:.2g}"
 
 
 def _verdict(tests: pd.DataFrame, case: str, player: str, measure: str, mark: str) -> str:
