@@ -16,14 +16,11 @@ from divideropt.errors import DivideroptError
 
 from . import curves, page
 from .cases import NAMES, VALVE, case_of
-from .contest import Contest
+from .contest import FRESH, Contest
 from .players import players
 from .runs import read
 
 ROOT = Path(__file__).parents[2]
-
-FIRST_SEED = 2001
-"""Seeds from here on were not looked at while the strategies were made."""
 
 QUICK = Contest(
     ROOT / "results" / "benchmarks" / "optimisers-quick",
@@ -100,7 +97,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="three problems, three seeds, 2,000 evaluations")
     parser.add_argument("--seeds", type=int, default=20, help="on the valve (default: 20)")
     parser.add_argument("--known-seeds", type=int, default=10, help="on each test problem (default: 10)")
-    parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help=f"default: {FIRST_SEED}")
+    parser.add_argument("--first-seed", type=int, default=FRESH, help=f"default: {FRESH}")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES, metavar="NAME", help=", ".join(NAMES))
     parser.add_argument("--workers", type=int, default=2, help="runs at a time (default: 2)")
     parser.add_argument("--tables", action="store_true", help="make no runs, the tables from those that are there")

@@ -10,7 +10,7 @@ from typing import Any
 import moocore
 import numpy as np
 from pymoo.problems.many import DTLZ1, DTLZ2, DTLZ7
-from pymoo.problems.multi import BNH, OSY, SRN, TNK, ZDT1, ZDT2, ZDT3, ZDT4, ZDT6, Truss2D
+from pymoo.problems.multi import BNH, OSY, SRN, TNK, ZDT1, ZDT2, ZDT3, ZDT4, ZDT6, Truss2D, WeldedBeam
 from pymoo.util.ref_dirs import get_reference_directions
 
 from divideropt.campaign.load import load_campaign
@@ -125,6 +125,7 @@ _KNOWN: Mapping[str, tuple[Callable[[], Any], Callable[[Any], FloatArray], Any]]
         "TNK": (TNK, lambda _: fronts.tnk(), None),
         "OSY": (OSY, lambda _: fronts.osy(), None),
         "Truss2D": (Truss2D, lambda _: fronts.truss(), None),
+        "WeldedBeam": (WeldedBeam, lambda _: fronts.welded_beam(), None),
     }
 )
 """How a test problem is made, its front, and its hypervolume where that of the front's points is not near enough."""

@@ -18,6 +18,9 @@ from .measures import DIRECTIONS, MARKS, history, measured
 from .players import PLAIN, PLAIN_EVALUATIONS, Player, players
 from .runs import Run, make, read
 
+FRESH = 2001
+"""Seeds from here on are for runs after the strategies and their defaults were frozen: nothing is tried on them."""
+
 POINTS = 28
 """Of an anytime curve."""
 
@@ -59,6 +62,11 @@ class Contest:
     def champion(self) -> str:
         """Our strategy that is tested against the others."""
         return next(iter(self.players))
+
+    @property
+    def first_seed(self) -> int:
+        """The least seed."""
+        return min(self.seeds + self.known_seeds)
 
     def seeds_of(self, case: str) -> tuple[int, ...]:
         """Return the seeds with which a case is played."""
@@ -157,7 +165,7 @@ def _state_of_sources() -> str:
 
 
 def _sources() -> Iterator[bytes]:
-    for name in ("measures.py", "cases.py", "fronts.py", "recorder.py"):
+    for name in ("measures.py", "cases.py", "fronts.py", "welded_beam.csv", "recorder.py"):
         yield Path(__file__).with_name(name).read_bytes()
     if DIRECTIONS.exists():
         yield DIRECTIONS.read_bytes()

@@ -7,6 +7,8 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 
+from .welded_beam import front
+
 DENSE = 20_001
 """Points on a front that is a curve: their hypervolume is then the curve's to some 1e-5."""
 
@@ -52,6 +54,13 @@ def truss() -> FloatArray:
     volume = 0.0025 * (16.0 + y**2) / np.sqrt(1.0 + y**2) + 0.01 * np.sqrt(1.0 + y**2)
     stress = 8000.0 * np.sqrt(1.0 + y**2) / y
     return np.column_stack([np.concatenate([light, volume]), np.concatenate([400.0 / light, stress])])
+
+
+def welded_beam() -> FloatArray:
+    """The welded beam's front, of cost and deflection, between the points of `welded_beam.front`; shape (n, 2)."""
+    places = np.log(front())
+    cost = np.linspace(places[0, 0], places[-1, 0], DENSE)
+    return np.asarray(np.exp(np.column_stack([cost, np.interp(cost, places[:, 0], places[:, 1])])))
 
 
 def dtlz7() -> FloatArray:

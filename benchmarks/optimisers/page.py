@@ -10,7 +10,7 @@ import pandas as pd
 
 from . import tables
 from .cases import VALVE
-from .contest import Contest
+from .contest import FRESH, Contest
 from .measures import DIRECTIONS
 from .recorder import CEILING
 
@@ -87,8 +87,8 @@ Seeds {seeds}.
   the origin and the campaign's reference point.
 - The best 500 points are what is left when the point that contributes least to the hypervolume is taken away,
   again and again.
-- The known fronts of TNK, OSY, Truss2D and DTLZ7, and the volumes of DTLZ1, 2 and 7, are computed in
-  `benchmarks/optimisers/fronts.py`; the other fronts are pymoo's, densely sampled. {found}"""
+- The known fronts of TNK, OSY, Truss2D, the welded beam and DTLZ7, and the volumes of DTLZ1, 2 and 7, are
+  computed in `benchmarks/optimisers/fronts.py`; the other fronts are pymoo's, densely sampled. {found}"""
 
 
 def _picture(pictures: Sequence[str]) -> list[str]:
@@ -105,7 +105,8 @@ def _picture(pictures: Sequence[str]) -> list[str]:
 
 def _seeds(contest: Contest, known: Sequence[str]) -> str:
     on_valve = [f"{_range(contest.seeds)} on the valve"] if VALVE in contest.cases else []
-    return "; ".join(on_valve + ([f"{_range(contest.known_seeds)} on {', '.join(known)}"] if known else []))
+    fresh = ", drawn after the strategies and their defaults were frozen" if contest.first_seed >= FRESH else ""
+    return "; ".join(on_valve + ([f"{_range(contest.known_seeds)} on {', '.join(known)}"] if known else [])) + fresh
 
 
 def _range(seeds: Sequence[int]) -> str:
