@@ -61,6 +61,7 @@ def _preface(contest: Contest, values: pd.DataFrame, command: str) -> list[str]:
         HOW.format(
             command=command,
             folder=contest.folder.name,
+            champion=contest.champion,
             seeds=_seeds(contest, known),
             mark=contest.marks[-1],
             ceiling=CEILING,
@@ -72,7 +73,7 @@ def _preface(contest: Contest, values: pd.DataFrame, command: str) -> list[str]:
 
 HOW = """\
 `{command}` makes the runs that are missing in `results/benchmarks/{folder}` and writes this section.
-Seeds {seeds}.
+The champion is `{champion}`: it is tested against each other player. Seeds {seeds}.
 
 - Every evaluation of every player is kept, and the archive of all of them is measured, not what the player
   returns; only feasible designs count.
