@@ -56,7 +56,7 @@ def trials(variant, answers, space=None, held=None):
     return np.array(asked), held
 
 
-def minimise(function, space, variant, seed, evaluations=2000):
+def minimise(function, space, variant, seed, evaluations=1000):
     """Return the best that a variant with its restarts comes to, and what it asked for."""
     asked = []
 
@@ -136,6 +136,22 @@ def test_a_reflection_worse_than_what_it_replaces_turns_back_and_then_retreats_a
     assert np.allclose(asked, [REFLECTED, back, (back + CENTROID) / 2])
     asked, _ = trials(variant, [8.5, 1.0])
     assert np.allclose(asked, [REFLECTED, (REFLECTED + CENTROID) / 2])
+
+
+def test_a_search_leaves_what_was_asked_and_told_as_it_was():
+    told = []
+
+    def score(designs):
+        told.append((designs, values := (designs**2).sum(axis=1), designs.copy(), values.copy()))
+        if len(told) > 200:
+            raise Stop
+        return values
+
+    with pytest.raises(Stop):
+        search_all(score, box([-1, -1], [1, 1]), 4, VARIANTS["robust"], np.random.default_rng(1))
+    for designs, values, designs_then, values_then in told:
+        assert designs.tobytes() == designs_then.tobytes()
+        assert values.tobytes() == values_then.tobytes()
 
 
 def test_forgetting_makes_old_values_worse_and_leaves_the_raw_ones_alone():

@@ -1,30 +1,16 @@
 """The complex method (Box 1965) and what became of it: one loop, five variants, restarts.
 
 A complex of points is held in the box. The worst is reflected over the centroid of the others; a trial that is not
-good enough retreats, again and again. What a variant does of this in its own way stands in `complex_moves`.
-
-- `box`: M. J. Box, "A new method of constrained optimization and a comparison with other methods", The Computer
-  Journal 8 (1965) 42-52. A trial that is still the worst retreats half way to the centroid; one beyond an explicit
-  bound is put just inside.
-- `guin`: the retreat turns to the best point as the retreats mount (J. A. Guin, The Computer Journal 10 (1968)
-  416-417), in the form of Krus and Andersson that C.7 of the thesis has. The trial need only beat what it replaces.
-- `complex_rf`: random parts, and values that are forgotten (P. Krus and J. Ölvander, "Performance index and
-  meta-optimization of a direct search optimization method", Engineering Optimization 45 (2013) 1167-1185).
-- `author`: `complex.m`, C.7 of the thesis, with its peculiarities. A reflection need only be as good as the worst
-  point, a retreat must be better; there is no limit to retreats, no end but the budget, no restart, and no care for a
-  feasible start. Only what C.7 evaluates twice, its first points, is evaluated once here; and the merit of a design
-  that fails is ours (docs/model/disagreements.md).
-- `robust`, the default: `complex_rf` without its noise, which hinders along a ridge, but forgetting faster, which
-  helps across one; with the expansion and the inside contraction of J. A. Nelder and R. Mead (The Computer Journal 7
-  (1965) 308-313), and restarts around the best. `benchmarks/complex_method.py` compares them all.
+good enough retreats, again and again. What a variant does of this in its own way, and its source, stand in
+`complex_moves`.
 
 Explicit constraints, the bounds, are met by clipping. Implicit ones by retreat: an infeasible trial is worse than any
 feasible one. Where no start is feasible, a search for the least violation comes first; then the infeasible points of
 a new complex retreat half way to the centroid of the feasible ones, until they are feasible (Box).
 """
 
-from dataclasses import dataclass as plain_dataclass
-from dataclasses import field, replace
+import dataclasses
+from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
@@ -109,7 +95,7 @@ class ComplexMethod:
         """The variant with the options that were given."""
         names = ("reflection", "randomisation", "forgetting", "tolerance", "restart")
         given = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
-        return replace(VARIANTS[self.variant], **given)
+        return dataclasses.replace(VARIANTS[self.variant], **given)
 
 
 def _usual_points(variables: int) -> int:
@@ -117,7 +103,7 @@ def _usual_points(variables: int) -> int:
     return max(2 * variables, 3)
 
 
-@plain_dataclass
+@dataclasses.dataclass
 class Complex:
     """The points held, and their merits.
 
@@ -129,11 +115,11 @@ class Complex:
 
     points: FloatArray
     merits: FloatArray
-    aged: FloatArray = field(init=False)
+    aged: FloatArray = dataclasses.field(init=False)
 
     def __post_init__(self) -> None:
-        """Nothing is old yet."""
-        self.aged = self.merits.copy()
+        """Nothing is old yet; what was asked and told stays as it was."""
+        self.points, self.merits, self.aged = self.points.copy(), self.merits.copy(), self.merits.copy()
 
     @property
     def best(self) -> int:
@@ -173,8 +159,7 @@ def search_all(score: Score, space: DesignSpace, points: int, variant: Variant, 
         random: Every draw.
     """
     best = _Best(score)
-    sample = space.sample(points, random)
-    held = Complex(sample, best.score(sample))
+    held = _anywhere(best, space, points, random)
     if variant.feasible_start:
         held = _made_feasible(held, best, space, variant, random)
     search(held, best.score, space, random, variant)
@@ -205,7 +190,7 @@ def search(
     width = space.upper - space.lower
     share = forgetting_share(variant.reflection, variant.forgetting, len(held.points))
 
-    def shaken(trial: FloatArray, span: float) -> FloatArray:
+    def place(trial: FloatArray) -> FloatArray:
         if variant.randomisation > 0:
             trial = trial + variant.randomisation * span * width * (random.random(len(width)) - 0.5)
         return _inside(trial, space, variant.margin)
@@ -215,29 +200,43 @@ def search(
         if variant.tolerance > 0 and span <= variant.tolerance:
             return
         held.age(share)
-        worst, best = held.worst, held.points[held.aged.argmin()].copy()
-        others = np.delete(held.points, worst, axis=0)
-        limit = float(np.delete(held.aged, worst).max() if variant.must_leave_worst else held.aged[worst])
-        centroid = others.mean(axis=0)
-        beyond = variant.reflection * (centroid - held.points[worst])
-        trial = shaken(centroid + beyond, span)
-        value = float(score(trial[None])[0])
-        if variant.expansion > 1 and value < held.aged.min():
-            further = _inside(centroid + variant.expansion * beyond, space, variant.margin)
-            promised = float(score(further[None])[0])
-            if promised < value:
-                trial, value = further, promised
-        retreats, good = 0, value < limit or (variant.accepts_equal and value == limit)
-        while not good and retreats < variant.most_retreats:
-            if variant.contraction and retreats == 0 and value >= held.aged[worst]:
-                trial = shaken((held.points[worst] + centroid) / 2, span)
-            else:
-                trial = shaken(variant.retreat(trial, centroid, best, retreats, random), span)
-            value = float(score(trial[None])[0])
-            retreats, good = retreats + 1, value < limit
-        if not good:
+        if not _replace_worst(held, score, place, random, variant):
             return
+
+
+def _replace_worst(
+    held: Complex,
+    score: Score,
+    place: Callable[[FloatArray], FloatArray],
+    random: np.random.Generator,
+    variant: Variant,
+) -> bool:
+    """Replace the worst point by its reflection or by what that retreats to; return whether one was good enough."""
+
+    def tried(trial: FloatArray) -> tuple[FloatArray, float]:
+        placed = place(trial)
+        return placed, float(score(placed[None])[0])
+
+    worst, best = held.worst, held.points[held.aged.argmin()]
+    limit = float(np.delete(held.aged, worst).max() if variant.must_leave_worst else held.aged[worst])
+    centroid = np.delete(held.points, worst, axis=0).mean(axis=0)
+    beyond = variant.reflection * (centroid - held.points[worst])
+    trial, value = tried(centroid + beyond)
+    if variant.expansion > 1 and value < held.aged.min():
+        further, promised = tried(centroid + variant.expansion * beyond)
+        if promised < value:
+            trial, value = further, promised
+    retreats, good = 0, value < limit or (variant.accepts_equal and value == limit)
+    while not good and retreats < variant.most_retreats:
+        if variant.contraction and retreats == 0 and value >= held.aged[worst]:
+            target = (held.points[worst] + centroid) / 2
+        else:
+            target = variant.retreat(trial, centroid, best, retreats, random)
+        trial, value = tried(target)
+        retreats, good = retreats + 1, value < limit
+    if good:
         held.replace(worst, trial, value)
+    return good
 
 
 class _Best:
@@ -288,8 +287,8 @@ def _around(best: _Best, space: DesignSpace, points: int, random: np.random.Gene
     assert best.point is not None
     reach = np.exp(random.uniform(*np.log(REACH))) * (space.upper - space.lower)
     fresh = space.clip(best.point + reach * (2 * random.random((points - 1, len(space))) - 1))
-    centre, known = best.point[None].copy(), best.value
-    return Complex(np.concatenate([centre, fresh]), np.concatenate([[known], best.score(fresh)]))
+    known = best.point[None], [best.value]
+    return Complex(np.concatenate([known[0], fresh]), np.concatenate([known[1], best.score(fresh)]))
 
 
 def _inside(trial: FloatArray, space: DesignSpace, margin: float) -> FloatArray:

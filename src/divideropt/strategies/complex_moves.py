@@ -1,6 +1,21 @@
 """The variants of the complex method: where a trial goes, when it is good enough, and when a complex has ended.
 
 They differ by what stands here, and share the loop in `complex_method.search`.
+
+- `box`: M. J. Box, "A new method of constrained optimization and a comparison with other methods", The Computer
+  Journal 8 (1965) 42-52. A trial that is still the worst retreats half way to the centroid; one beyond an explicit
+  bound is put just inside.
+- `guin`: the retreat turns to the best point as the retreats mount (J. A. Guin, The Computer Journal 10 (1968)
+  416-417), in the form of Krus and Andersson that C.7 of the thesis has. The trial need only beat what it replaces.
+- `complex_rf`: random parts, and values that are forgotten (P. Krus and J. Ölvander, "Performance index and
+  meta-optimization of a direct search optimization method", Engineering Optimization 45 (2013) 1167-1185).
+- `author`: `complex.m`, C.7 of the thesis, with its peculiarities. A reflection need only be as good as the worst
+  point, a retreat must be better; there is no limit to retreats, no end but the budget, no restart, and no care for a
+  feasible start. Only what C.7 evaluates twice, its first points, is evaluated once here; and the merit of a design
+  that fails is ours (docs/model/disagreements.md).
+- `robust`, the default: `complex_rf` without its noise, which hinders along a ridge, but forgetting faster, which
+  helps across one; with the expansion and the inside contraction of J. A. Nelder and R. Mead (The Computer Journal 7
+  (1965) 308-313), and restarts around the best. `benchmarks/complex_method.py` compares them all.
 """
 
 from collections.abc import Callable, Mapping
