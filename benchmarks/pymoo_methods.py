@@ -1,7 +1,7 @@
 """What pymoo's methods bring on `divider.yaml`, at equal evaluations: which of them a campaign offers, and why.
 
-For each method, over its seeds: the hypervolume of all its evaluations together at the campaign's reference point, and
-how far above the best known optimum of 91 directions it stays, on average over them and at worst. Medians over seeds.
+For each method, over its seeds: the hypervolume of all its evaluations together at the campaign's reference point,
+and how far above the best known optimum of 91 directions it stays, on average over them and at worst; medians.
 Each is also run twice with one seed in one process: "unseeded" is how many generators without a seed it made, "same"
 whether the two runs asked for the same designs to the bit. Names in capitals are pymoo's as they come, others ours.
 """
@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -78,8 +79,8 @@ METHODS: dict[str, Method] = {
     "SPEA2": pymoos(lambda: SPEA2(pop_size=POPULATION)),
     "CTAEA": pymoos(lambda: CTAEA(NICHES)),
 }
-"""Two are not here, since they cannot keep the contract: pymoo's MOEAD takes no constraints, and the course of its RVEA
-hangs on the budget."""
+"""Two are not here, since they cannot keep the contract: pymoo's MOEAD takes no constraints, and the course of its
+RVEA hangs on the budget."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,7 @@ def _polished(problem: Problem, design: FloatArray, w: FloatArray) -> float:
     for _ in range(POLISHES):
         simplex = np.clip(start + np.vstack([np.zeros(len(start)), 0.02 * np.eye(len(start))]), 0, 1)
         simplex[1:][start > 0.98] = start - 0.02 * np.eye(len(start))[start > 0.98]
-        options = {"initial_simplex": simplex, "maxfev": 1000, "xatol": 1e-7, "fatol": 1e-9, "adaptive": True}
+        options: Any = {"initial_simplex": simplex, "maxfev": 1000, "xatol": 1e-7, "fatol": 1e-9, "adaptive": True}
         found = minimize(value, start, method="Nelder-Mead", bounds=[(0, 1)] * len(start), options=options)
         start, before, best = found.x, best, min(best, float(found.fun))
         if before - best < 1e-5 * best:
@@ -193,7 +194,7 @@ def counting_unseeded() -> Iterator[list[int]]:
     """Count the generators made without a seed."""
     made, real = [0], np.random.default_rng
 
-    def default_rng(seed: object = None) -> np.random.Generator:
+    def default_rng(seed: Any = None) -> np.random.Generator:
         made[0] += seed is None
         return real(seed)
 
