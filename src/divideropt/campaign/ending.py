@@ -21,6 +21,9 @@ from divideropt.store import EndingRecord, Store
 LOOKS = 4
 """Hypervolumes that are computed in a window; each may take milliseconds where the front is large."""
 
+COSTLY_LOOKS = 1
+"""The same from five objectives on, where one may take seconds."""
+
 
 class Reason(StrEnum):
     """Why a run ended."""
@@ -136,7 +139,7 @@ class _Growth:
 
         Before anything feasible is within the reference point there is no growth to speak of, and no end.
         """
-        part = -(-self.rule.window // LOOKS)
+        part = -(-self.rule.window // (LOOKS if len(self._reference) < 5 else COSTLY_LOOKS))
         before, self._count = self._count, self._count + len(told.F)
         self._fresh.append(told.F[told.feasible & (self._reference > told.F).all(axis=1)])
         if before // part == self._count // part:
