@@ -17,6 +17,7 @@ from divideropt.campaign.runner import Runner
 from divideropt.campaign.status import read_status
 from divideropt.errors import DamagedFileError, FileMistakes, StoreError
 from divideropt.report.data import read_report
+from divideropt.report.tables import runs_table
 from divideropt.store import Store
 from stores import assert_same, logs
 
@@ -61,7 +62,9 @@ def test_each_run_ends_for_its_reason_and_says_so(whole):
     reached = log[(log.outcome == "ok") & (log.spare >= 0) & (log.f1 <= 0.2) & (log.f2.abs() <= 4)]
     assert reached.index[0] == design
     assert len(log) - 10 <= list(log.index).index(design) < len(log) < 400
-    assert [item.ending for item in read_report(Store(whole)).runs] == [item.ending for item in status.values()]
+    table = runs_table(read_report(Store(whole)))
+    assert table.headings[-1].words == "ended"
+    assert [row.cells[-1].text for row in table.rows] == [item.ending for item in status.values()]
 
 
 def test_progress_says_why_a_run_ended(tmp_path):
