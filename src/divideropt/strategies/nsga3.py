@@ -15,7 +15,7 @@ from pydantic.dataclasses import dataclass
 from pymoo.algorithms.moo.nsga3 import NSGA3 as PymooNSGA3  # noqa: N811
 from pymoo.core.population import Population
 from pymoo.operators.selection.tournament import TournamentSelection
-from pymoo.util.ref_dirs import get_reference_directions
+from pymoo.util.reference_direction import UniformReferenceDirectionFactory
 
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
@@ -55,7 +55,7 @@ class NSGA3:
         """Breed generation after generation; see `Strategy.run`."""
         scales = np.array([o.quantity.scale for o in problem.objectives])
         parts = _parts(len(scales), self.directions)
-        directions = get_reference_directions("das-dennis", len(scales), n_partitions=parts)
+        directions = UniformReferenceDirectionFactory(len(scales), n_partitions=parts).do()
 
         def score(designs: FloatArray) -> tuple[FloatArray, FloatArray]:
             told = evaluate(designs)
