@@ -143,6 +143,8 @@ def status(store: Path, as_json: bool) -> None:
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
         volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
         lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        if item.ending is not None:
+            lines.append(f"  ended: {item.ending}")
         if item.failure is not None:
             lines.append(f"  incomplete, given up: {item.failure}")
         if not item.repeatable:

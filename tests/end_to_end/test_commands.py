@@ -106,6 +106,8 @@ def test_status_says_what_is_done_and_best(finished):
     assert min(r["best"] for r in said["runs"]) == pytest.approx(lam.min(), rel=1e-12)
     words = call("status", "results/small", folder=folder).stdout
     assert "nsga2-1: 64 of 64 evaluations" in words
+    assert [r["reason"] for r in said["runs"]] == ["budget", "budget"]
+    assert "  ended: its budget of 64 evaluations is spent" in words
     assert f"{said['verified']} of them verified, 0 deviating" in words
 
 

@@ -131,7 +131,9 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         front=designs,
         responses=responses,
         runs=tuple(
-            replace(run, name=hostile, strategy=hostile, examples=dict.fromkeys(run.outcomes, hostile))
+            replace(
+                run, name=hostile, strategy=hostile, examples=dict.fromkeys(run.outcomes, hostile), ending=hostile
+            )
             for run in data.runs
         ),
         variables=tuple(replace(v, axis=_hostile(v.axis, hostile)) for v in data.variables),

@@ -107,7 +107,7 @@ def test_a_damaged_front_is_made_again_from_the_logs(store, damage):
 
 
 @pytest.mark.parametrize("command", EVERY)
-@pytest.mark.parametrize("name", ["evaluations", "fronts", "verification"])
+@pytest.mark.parametrize("name", ["evaluations", "fronts", "verification", "endings"])
 def test_a_file_where_a_folder_should_be_is_refused_by_every_command(store, name, command):
     shutil.rmtree(store / name)
     (store / name).write_text("mine")

@@ -13,6 +13,7 @@ from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, b
 from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.campaign.termination import termination_rules
 from divideropt.campaign.worst_case import worst_case_rules
 from divideropt.models import Parameter, Quantity
 
@@ -232,6 +233,7 @@ class Campaign(Section):
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
         yield from worst_case_rules(raw)
+        yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
             given = objective.get("goal") if isinstance(objective, Mapping) else None

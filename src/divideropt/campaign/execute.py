@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from divideropt.campaign.ending import Ended, Watch
 from divideropt.campaign.plan import Run
 from divideropt.errors import StoreError
 from divideropt.models.base import FloatArray
@@ -54,8 +55,9 @@ def execute(
     simulate: Simulate,
     report: Callable[[Progress], None],
     stopping: Callable[[], bool],
-) -> None:
-    """Drive a run to the end of its budget.
+    reference: FloatArray | None = None,
+) -> Ended:
+    """Drive a run to its end: that of its budget, or where its termination says so.
 
     Args:
         run: What to run.
@@ -63,14 +65,18 @@ def execute(
         log: Its log: answers first, and receives what is new.
         simulate: Evaluates what the log does not know.
         report: Hears of every batch.
-        stopping: Asked after every new batch.
+        stopping: Asked after every new batch that does not end the run.
+        reference: The hypervolume's reference point, shape (k,), if the campaign has one.
+
+    Returns:
+        Why it ended, and after how many evaluations.
 
     Raises:
         StoreError: The log holds another batch than the strategy asks for.
         DiskError: The disk refused; what was flushed is intact.
         StoppedError: `stopping` said yes; the log is flushed.
     """
-    logged = log.replay()
+    logged, watch = log.replay(), Watch(run, problem, reference)
     count = 0
 
     def evaluate(designs: FloatArray) -> Told:
@@ -85,21 +91,41 @@ def execute(
             log.append(fresh)
             told = problem.tell(fresh)
         report(Progress(told, replayed=known is not None))
+        ended = watch.hear(told)
+        if ended is not None:
+            raise _OverError(ended)
         if known is None and stopping():
             raise StoppedError
         return told
 
     try:
-        with one_thread():
-            run.options.run(problem, evaluate, run.seed)
-        leftover = next(logged, None)
-        if leftover is not None:
+        ended = _run_out(run, problem, evaluate) or watch.no_more()
+        if next(logged, None) is not None:
             raise StoreError(
-                f"run {run.name}: the log holds more evaluations than its budget; "
-                "raise the budget again, or start anew (--fresh)"
+                f"run {run.name}: the log goes on after {ended.evaluations} evaluations, where the run as now asked "
+                f"for would have ended ({ended.text}); ask for what was asked before, or start anew (--fresh)"
             )
     finally:
         log.flush()
+    return ended
+
+
+class _OverError(Exception):
+    """A rule of the termination ends the run; strategies let it pass."""
+
+    def __init__(self, ended: Ended) -> None:
+        super().__init__(ended.text)
+        self.ended = ended
+
+
+def _run_out(run: Run, problem: Problem, evaluate: Callable[[FloatArray], Told]) -> Ended | None:
+    """Let the strategy ask until it asks for no more, or until a rule ends it: then return how."""
+    try:
+        with one_thread():
+            run.options.run(problem, evaluate, run.seed)
+    except _OverError as over:
+        return over.ended
+    return None
 
 
 def _replayed(logged: Iterator[Evaluations], designs: FloatArray, run: str, count: int) -> Evaluations | None:

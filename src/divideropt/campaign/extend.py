@@ -1,5 +1,8 @@
 """May a store go on with this campaign? Only budgets, seeds and strategies may be added to.
 
+A `termination` may change too, as long as no logged run would have ended by it before the last of its evaluations:
+loosened or deleted, the runs go on; tightened, those that have gone further are in the way.
+
 What touches no evaluation, `verification` and `parallel`, may be changed at will; and `model.deadline`, which counts
 for designs that are not yet logged.
 """
@@ -9,8 +12,12 @@ from typing import Any
 
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.ending import Ended, Watch
+from divideropt.campaign.plan import plan_runs, reference_of
 from divideropt.campaign.reader import read_text
 from divideropt.errors import StoreError
+from divideropt.problem import Problem
+from divideropt.store import Store, TableSchema
 
 BUDGETS = ("generations", "evaluations")
 """Options that may grow."""
@@ -34,9 +41,31 @@ def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
         raise StoreError(
             f"{where}: this store belongs to another campaign:\n  "
             + "\n  ".join(differences)
-            + "\nOnly generations, evaluations, seeds and strategies may be added; name another folder (--store), or "
-            "start anew (--fresh, which moves the old store aside)."
+            + "\nOnly generations, evaluations, seeds and strategies may be added, and a termination changed; name "
+            "another folder (--store), or start anew (--fresh, which moves the old store aside)."
         )
+
+
+def check_endings(asked: Campaign, problem: Problem, store: Store) -> None:
+    """Check that no run of a store has gone on after the end that its termination now gives it.
+
+    Raises:
+        StoreError: One has; or its log is damaged.
+    """
+    schema, reference = TableSchema.of(problem), reference_of(asked)
+    for run in plan_runs(asked):
+        if run.termination is None:
+            continue
+        watch = Watch(run, problem, reference)
+        ended: Ended | None = None
+        for batch in store.log(run.name, schema).replay():
+            if ended is not None:
+                raise StoreError(
+                    f"{store.folder}: run {run.name} has gone on after {ended.evaluations} evaluations, where it "
+                    f"would have ended by the termination asked for now ({ended.text}); loosen or delete "
+                    f"strategies.{run.strategy}.termination, name another folder (--store), or start anew (--fresh)"
+                )
+            ended = watch.hear(problem.tell(batch))
 
 
 def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
@@ -76,6 +105,8 @@ def _compare_plans(path: str, before: Mapping[str, Any], after: Mapping[str, Any
             missing = [seed for seed in before["seeds"] if seed not in after["seeds"]]
             if missing:
                 yield f"{path}.seeds: {missing} in the store, not in the campaign"
+        elif option == "termination":
+            continue  # the logs judge it, see `check_endings`
         elif option not in BUDGETS:
             yield from _compare(f"{path}.{option}", old, new)
         elif before[option] > after[option]:

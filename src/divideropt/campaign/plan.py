@@ -7,6 +7,7 @@ import numpy as np
 
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
+from divideropt.campaign.termination import TerminationConfig
 from divideropt.campaign.worst_case import gathered_name, worst_cases
 from divideropt.models import Model, Quantity
 from divideropt.models.base import FloatArray
@@ -25,18 +26,20 @@ class Run:
         strategy: The strategy's name.
         options: The strategy.
         seed: Its seed.
+        termination: By which rules it ends before its budget is spent; None by none.
     """
 
     name: str
     strategy: str
     options: Strategy
     seed: int
+    termination: TerminationConfig | None = None
 
 
 def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
     """List the runs, in the campaign's order."""
     return tuple(
-        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed)
+        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.termination)
         for plan in campaign.strategies
         for seed in plan.seeds
     )

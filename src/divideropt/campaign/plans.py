@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 
 from divideropt.campaign.reader import MOST_MISTAKES
 from divideropt.campaign.sections import collect, mistake, relay, show, together, unknown
+from divideropt.campaign.termination import TerminationConfig, termination_schema
 from divideropt.strategies import STRATEGIES, Strategy
 
 LARGEST_SEED = 2**32 - 1
@@ -23,16 +24,20 @@ class StrategyPlan:
         name: A key of `STRATEGIES`.
         options: The strategy with its options.
         seeds: One run each, in this order.
+        termination: By which rules they end before their budget is spent; None by none.
     """
 
     name: str
     options: Strategy
     seeds: tuple[int, ...]
+    termination: TerminationConfig | None = None
 
     def as_written(self) -> dict[str, Any]:
-        """Return options and seeds as a campaign's file has them."""
+        """Return options, seeds and termination as a campaign's file has them."""
         options = dataclasses.asdict(cast(Any, self.options))
-        return {key: value for key, value in options.items() if value is not None} | {"seeds": list(self.seeds)}
+        ending = {} if self.termination is None else {"termination": self.termination.as_written()}
+        given = {key: value for key, value in options.items() if value is not None}
+        return given | {"seeds": list(self.seeds)} | ending
 
 
 def read_plans(value: object) -> tuple[StrategyPlan, ...]:
@@ -59,6 +64,10 @@ def needs_goals(name: str) -> bool:
     return "aggregate" in _option_names(STRATEGIES[name]) if name in STRATEGIES else False
 
 
+_BESIDES = ("seeds", "termination")
+"""What any strategy has besides its options."""
+
+
 def _distinct(seeds: tuple[int, ...]) -> tuple[int, ...]:
     if not seeds:
         raise ValueError("the list is empty, so the strategy would not run; write a seed, or delete the strategy")
@@ -83,9 +92,9 @@ def _plan(name: str, raw: object) -> StrategyPlan:
     given = dict(raw or {})
     known = _option_names(STRATEGIES[name])
     found = [
-        mistake((key,), unknown("option", key, [*known, "seeds"]), at_key=True)
+        mistake((key,), unknown("option", key, [*known, *_BESIDES]), at_key=True)
         for key in list(given)[:MOST_MISTAKES]
-        if key not in known and key != "seeds"
+        if key not in known and key not in _BESIDES
     ]
     seeds: tuple[int, ...] = ()
     options: Any = None
@@ -97,9 +106,23 @@ def _plan(name: str, raw: object) -> StrategyPlan:
         options = cast(Any, STRATEGIES[name])(**{key: given[key] for key in known if key in given})
     except ValidationError as error:
         found += relay(error)
+    termination: TerminationConfig | None = None
+    try:
+        if given.get("termination") is not None:
+            termination = TerminationConfig.model_validate(given["termination"])
+    except ValidationError as error:
+        found += relay(error, ("termination",))
+    if options is not None and termination is not None and termination.stagnation is not None:
+        window, budget = termination.stagnation.window, options.budget
+        if window >= budget:
+            sentence = (
+                f"{window} is too large for a budget of {budget} evaluations, within which it would never end a run; "
+                "give a smaller window, or a larger budget"
+            )
+            found.append(mistake(("termination", "stagnation", "window"), sentence))
     if found:
         raise together(found)
-    return StrategyPlan(name, options, seeds)
+    return StrategyPlan(name, options, seeds, termination)
 
 
 def _option_names(strategy: type[Strategy]) -> list[str]:
@@ -114,5 +137,5 @@ def _plan_schema(strategy: type[Strategy]) -> dict[str, Any]:
         "uniqueItems": True,
         "default": [1],
     }
-    properties = {**schema.get("properties", {}), "seeds": seeds}
+    properties = {**schema.get("properties", {}), "seeds": seeds, "termination": termination_schema()}
     return {**schema, "type": ["object", "null"], "properties": properties, "additionalProperties": False}

@@ -44,7 +44,7 @@ class Standing:
         rate: Evaluations simulated a second; 0 before the first.
         best: Least max λ_i of its feasible designs; None where there is none, or no goals.
         hypervolume: Of its feasible designs, None without a reference point.
-        finished: Whether the run has ended.
+        ended: Why the run has ended; None before it has.
     """
 
     run: str
@@ -54,7 +54,7 @@ class Standing:
     rate: float
     best: float | None
     hypervolume: float | None
-    finished: bool
+    ended: str | None
 
 
 class Reporter:
@@ -80,13 +80,13 @@ class Reporter:
             self._began = time.monotonic()
         self._fresh.append(progress.told)
         if time.monotonic() - self._written >= max(WRITE_SECONDS, self._took / WRITE_SHARE):
-            self.write(finished=False)
+            self.write()
             self._took = time.monotonic() - self._written
 
-    def write(self, *, finished: bool) -> None:
-        """Write the standing; a disk that refuses does not matter here."""
+    def write(self, ended: str | None = None) -> None:
+        """Write the standing, and why the run has ended if it has; a disk that refuses does not matter here."""
         self._written = time.monotonic()
-        text = json.dumps(asdict(self._standing(finished)))
+        text = json.dumps(asdict(self._standing(ended)))
         temporary = self._path.with_suffix(".new")
         try:
             temporary.write_text(text, encoding="utf-8")
@@ -94,7 +94,7 @@ class Reporter:
         except OSError:
             return
 
-    def _standing(self, finished: bool) -> Standing:
+    def _standing(self, ended: str | None) -> Standing:
         if self._fresh:
             told = Told(*(np.concatenate(parts) for parts in zip(*((t.F, t.G) for t in self._fresh), strict=True)))
             self._fresh = []
@@ -107,7 +107,7 @@ class Reporter:
         fresh = self._done - self._replayed
         volume = None if self._reference is None else hypervolume(self._front, self._reference)
         rate = fresh / elapsed if elapsed > 0 else 0.0
-        return Standing(self._run, self._done, self._budget, self._replayed, rate, self._best, volume, finished)
+        return Standing(self._run, self._done, self._budget, self._replayed, rate, self._best, volume, ended)
 
 
 class Display:
@@ -156,7 +156,7 @@ class Display:
         for standing in self._standings():
             if standing.run not in said:
                 self._console.print(_line(standing), soft_wrap=True)
-            if standing.finished:
+            if standing.ended is not None:
                 said.add(standing.run)
 
     def _table(self) -> Table:
@@ -167,7 +167,7 @@ class Display:
             table.add_row(
                 s.run,
                 f"{s.done} of {s.budget}",
-                "done" if s.finished else f"{100 * s.done / s.budget:.0f} %",
+                _state(s),
                 f"{s.rate:.0f}",
                 _number(s.best),
                 _number(s.hypervolume),
@@ -222,12 +222,17 @@ class Counter:
 
 
 def _line(s: Standing) -> str:
-    state = "done" if s.finished else f"{100 * s.done / s.budget:.0f} %"
     replayed = f", {s.replayed} from the log" if s.replayed else ""
     return (
-        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({state}), {s.rate:.0f}/s, "
+        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({_state(s)}), {s.rate:.0f}/s, "
         f"best max λ {_number(s.best)}, hypervolume {_number(s.hypervolume)}"
     )
+
+
+def _state(s: Standing) -> str:
+    if s.ended is None:
+        return f"{100 * s.done / s.budget:.0f} %"
+    return "done" if s.done == s.budget else f"done: {s.ended}"
 
 
 def _number(value: float | None) -> str:

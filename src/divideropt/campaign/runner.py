@@ -12,7 +12,7 @@ from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew, ProcessDiedError
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.execute import Simulate
-from divideropt.campaign.extend import check_extends
+from divideropt.campaign.extend import check_endings, check_extends
 from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
@@ -91,7 +91,7 @@ class Runner:
         if aside is not None:
             say(f"the old store is now {aside}", self._words)
         with self._store.writing(), self._interruption.signals():
-            self._take_campaign()
+            self._take_campaign(problem)
             changed = self._store.keep_fingerprint()
             if changed is not None:
                 say(changed, self._words)
@@ -103,12 +103,13 @@ class Runner:
                 failures = {ending.run: ending.failure for ending in endings if ending.failure is not None}
                 return self._write_fronts(problem, verifier, crew, failures)
 
-    def _take_campaign(self) -> None:
+    def _take_campaign(self, problem: Problem) -> None:
         """Check that the store is this campaign's, and write down what it has become."""
         if self._store.exists:
             if self._store.read_campaign() == self._text:
                 return
             check_extends(stored_campaign(self._store), self._campaign, self._store.folder)
+            check_endings(self._campaign, problem, self._store)
         elif self._store.has_logs:
             raise StoreError(
                 f"{self._store.folder}: there are evaluations, but no campaign.yaml to say whose; restore it, "

@@ -153,6 +153,7 @@ _SENTENCES = {
     "greater_than_equal": "{value} is too small; the least permitted is {ge}",
     "less_than_equal": "{value} is too large; the most permitted is {le}",
     "literal_error": "{value} is not permitted; use {expected}",
+    "bool_type": "{value} is neither true nor false; write one of them",
     "string_type": "{value} is not a word; write one, in quotes if it looks like a number",
 }
 """What pydantic finds, as value, limit and remedy."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from divideropt.analysis import combined_front, hypervolume_history, marked, repeatable, summarise, tally
+from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
@@ -25,6 +26,8 @@ class RunStatus:
         hypervolume: Of the feasible designs, None without a reference point.
         repeatable: Whether it comes out the same from scratch: no simulation timed out or crashed.
         failure: Why it was given up, None if it was not.
+        reason: Why it ended, in a word: budget, goals, stagnation or exhausted; None before it has.
+        ending: Why it ended, in a sentence.
     """
 
     run: str
@@ -37,6 +40,8 @@ class RunStatus:
     hypervolume: float | None
     repeatable: bool
     failure: str | None
+    reason: str | None
+    ending: str | None
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,7 @@ def read_status(store: Store) -> StoreStatus:
     logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in plan_runs(campaign)}
     runs = []
     for run in plan_runs(campaign):
-        found = logs[run.name]
+        found, ending = logs[run.name], kept_ending(store, run, logs[run.name].evaluations)
         volumes = [] if reference is None else hypervolume_history(found.told, reference, [found.evaluations])
         runs.append(
             RunStatus(
@@ -87,6 +92,8 @@ def read_status(store: Store) -> StoreStatus:
                 hypervolume=volumes[0] if volumes else None,
                 repeatable=repeatable(found.outcomes),
                 failure=Mishaps(store.status_folder, run.name).failure,
+                reason=None if ending is None else str(ending.reason),
+                ending=None if ending is None else ending.text,
             )
         )
     damage = None

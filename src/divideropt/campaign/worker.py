@@ -13,6 +13,7 @@ from divideropt.campaign.cluster import abandoned, on_cluster
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dropping import SharedLog, Stopping
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.ending import keep_ending
 from divideropt.campaign.execute import Simulate, StoppedError, execute
 from divideropt.campaign.guard import Guard
 from divideropt.campaign.load import parse_campaign
@@ -36,7 +37,7 @@ class Ending:
 
     Attributes:
         run: Its name.
-        stopped: Whether it was asked to stop before its budget was spent.
+        stopped: Whether it was asked to stop before its end.
         error: What went wrong, if a user can mend it.
         failure: Why it was given up, if its process died or broke down again and again.
     """
@@ -118,13 +119,15 @@ def work(campaign: Campaign, problem: Problem, store: Store, run: Run, simulate:
 
                 with Stopping(lambda: stop.exists() or gone(), drop) as stopping:
                     here = problem.simulate if guard is None else guard.simulate
-                    execute(run, problem, log, simulate or here, reporter, lambda: stopping.heard)
+                    simulating = simulate or here
+                    ended = execute(run, problem, log, simulating, reporter, lambda: stopping.heard, reference)
+            keep_ending(store, run, ended)
     except StoppedError:
-        reporter.write(finished=False)
+        reporter.write()
         return Ending(run.name, stopped=True)
     except DivideroptError as error:
         return Ending(run.name, error=error)
-    reporter.write(finished=True)
+    reporter.write(ended.text)
     return Ending(run.name)
 
 

@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from divideropt.analysis import Summary, Verified, combined_front, marked, summarise
 from divideropt.analysis.summary import Best
+from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
@@ -140,7 +141,8 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
-    facts = tuple(read_run(run, logs[run.name], reference) for run in runs)
+    endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
+    facts = tuple(read_run(run, logs[run.name], reference, endings[run.name]) for run in runs)
     table, notes = _front(store, logs, problem, schema)
     known = store.verification(schema).table()
     table = marked(table, known, problem, schema, campaign.verification.share)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from divideropt.analysis import Summary, hypervolume_history, repeatable
+from divideropt.campaign.ending import Ended
 from divideropt.campaign.plan import Run
 from divideropt.models import Outcome
 from divideropt.models.base import FloatArray
@@ -34,6 +35,7 @@ class RunFacts:
         marks: Numbers of evaluations at which the histories are taken.
         hypervolumes: Hypervolume up to each mark; empty without a reference point.
         least: Least value of the first objective up to each mark, NaN before the first feasible design.
+        ending: Why it ended, in a sentence; "" before it has.
         best: Row of the log of the design with the least max λ_i, and that value; None where there is none.
     """
 
@@ -49,6 +51,7 @@ class RunFacts:
     hypervolumes: tuple[float, ...]
     least: tuple[float, ...]
     best: tuple[int, float] | None
+    ending: str
 
     @property
     def repeatable(self) -> bool:
@@ -61,13 +64,14 @@ class RunFacts:
         return self.hypervolumes[-1] if self.hypervolumes else None
 
 
-def read_run(run: Run, log: Summary, reference: FloatArray | None) -> RunFacts:
+def read_run(run: Run, log: Summary, reference: FloatArray | None, ended: Ended | None) -> RunFacts:
     """Say what a run did.
 
     Args:
         run: As planned.
         log: Its evaluations so far.
         reference: The reference point, shape (k,), or None.
+        ended: How it ended, None before it has.
     """
     told = log.told
     marks = _marks(log.evaluations, told.F.shape[1])
@@ -85,6 +89,7 @@ def read_run(run: Run, log: Summary, reference: FloatArray | None) -> RunFacts:
         volumes,
         _least(told, marks),
         None if log.best is None else (log.best.row, log.best.value),
+        "" if ended is None else ended.text,
     )
 
 

@@ -78,7 +78,7 @@ def best_table(data: ReportData) -> Table:
 
 
 def runs_table(data: ReportData) -> Table:
-    """List the runs: budget, evaluations, what of them came to the front, hypervolume."""
+    """List the runs: budget, evaluations, what of them came to the front, hypervolume, why each ended."""
     headings = [Heading("run", numeric=False), Heading("seed"), Heading("evaluations"), Heading("budget")]
     headings += [Heading("feasible"), Heading("on the front", title="designs of the combined front")]
     measured = any(run.hypervolumes for run in data.runs)
@@ -91,7 +91,9 @@ def runs_table(data: ReportData) -> Table:
         cells = [Cell(run.name, run.name), *(Cell(str(count), str(count)) for count in counts)]
         if measured:
             cells.append(Cell("–" if run.hypervolume is None else f"{run.hypervolume:.4f}"))
+        cells.append(Cell(run.ending or "–"))
         rows.append(Row("", tuple(cells)))
+    headings.append(Heading("ended", title="why the run asked for no more", numeric=False))
     return Table(tuple(headings), tuple(rows))
 
 

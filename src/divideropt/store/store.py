@@ -11,6 +11,7 @@ import pyarrow as pa
 from filelock import FileLock, Timeout
 
 from divideropt.errors import DamagedFileError, StoreError, StoreInUseError, UsageError
+from divideropt.store.endings import EndingRecord, read_ending, write_ending
 from divideropt.store.files import (
     check_links,
     clear_temporaries,
@@ -153,6 +154,19 @@ class Store:
             raise DamagedFileError(f"{path}: damaged ({objection}); {remedy}")
         return table
 
+    def write_ending(self, run: str, record: EndingRecord) -> None:
+        """Keep how a run ended; see `divideropt.store.endings`."""
+        with disk_errors(self._ending_path(run)):
+            write_ending(self._ending_path(run), record, self._check_owner)
+
+    def read_ending(self, run: str) -> EndingRecord | None:
+        """Read how a run ended, or None if it has not, or not since this is kept.
+
+        Raises:
+            DamagedFileError: That is damaged; it follows from the log.
+        """
+        return read_ending(self._ending_path(run))
+
     def verification(self, schema: TableSchema) -> Parts:
         """Open the results of simulating front points again, in the order in which that was done."""
         folder = self._part_of_store("verification")
@@ -228,7 +242,7 @@ class Store:
     def _make_ready(self) -> None:
         """Find what would be in the way later, and clear what killed writers left."""
         logs = self._part_of_store("evaluations")
-        parts = [self._part_of_store(name) for name in ("fronts", "verification")]
+        parts = [self._part_of_store(name) for name in ("fronts", "verification", "endings")]
         self._part_of_store(self.status_folder.name)
         runs = [self._part_of_store(logs.name, path.name) for path in logs.glob("[!.]*")]
         for folder in (self.folder, logs, *runs, *parts):
@@ -248,6 +262,9 @@ class Store:
 
     def _front_path(self, name: str) -> Path:
         return self._part_of_store("fronts") / f"{name}.parquet"
+
+    def _ending_path(self, run: str) -> Path:
+        return self._part_of_store("endings") / f"{run}.json"
 
     def _locked(self) -> AbstractContextManager[None]:
         def reason() -> str:

@@ -8,14 +8,28 @@ from divideropt.strategies.complex_method import ComplexMethod
 from divideropt.strategies.genetic import Genetic
 from divideropt.strategies.goal_attainment import GoalAttainment
 from divideropt.strategies.nsga2 import NSGA2
+from divideropt.strategies.nsga3 import NSGA3
+from divideropt.strategies.sms_emoa import SMSEMOA
 
 STRATEGIES: Mapping[str, type[Strategy]] = MappingProxyType(
     {
         "nsga2": NSGA2,
+        "nsga3": NSGA3,
+        "sms_emoa": SMSEMOA,
         "genetic": Genetic,
         "complex": ComplexMethod,
         "goal_attainment": GoalAttainment,
     }
 )
 
-__all__ = ["NSGA2", "STRATEGIES", "ComplexMethod", "Evaluate", "Genetic", "GoalAttainment", "Strategy"]
+__all__ = [
+    "NSGA2",
+    "NSGA3",
+    "SMSEMOA",
+    "STRATEGIES",
+    "ComplexMethod",
+    "Evaluate",
+    "Genetic",
+    "GoalAttainment",
+    "Strategy",
+]

@@ -1,5 +1,6 @@
 """Driving a pymoo algorithm by ask and tell, so that every evaluation passes through our own call."""
 
+import warnings
 from collections.abc import Callable
 
 from pymoo.config import Config
@@ -44,7 +45,8 @@ def drive(
             return
         F, G = score(infills.get("X"))
         Evaluator().eval(StaticProblem(problem, F=F, G=G), infills)
-        algorithm.tell(infills=infills)
+        with warnings.catch_warnings():  # NSGA-III's normalisation would turn them all off for good
+            algorithm.tell(infills=infills)
 
 
 class _Box(PymooProblem):  # type: ignore[misc]
