@@ -205,11 +205,11 @@ def test_the_error_of_a_slope_is_what_noise_makes_of_it():
     design = np.array([0.5])
     found = [
         slopes_at(design, space, *np.split(random.normal(size=(NODES, 1)), [1]), np.ones(NODES - 1, dtype=bool))
-        for _ in range(20_000)
+        for _ in range(5_000)
     ]
     middle = np.array([slopes.gradients[0, 0] for slopes in found])
     errors = np.array([slopes.errors[0, 0] for slopes in found])
-    assert math.sqrt(np.mean(errors**2)) == pytest.approx(middle.std(), rel=0.02)
+    assert math.sqrt(np.mean(errors**2)) == pytest.approx(middle.std(), rel=0.05)
 
 
 @pytest.mark.parametrize("at", [0.0, 0.5 * STEP, 1.5 * STEP, 0.5, 1 - 1.5 * STEP, 1 - 0.5 * STEP, 1.0])

@@ -10,8 +10,8 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace
 
 STEP = 2e-3
-"""Between neighbours, of a variable's range: the noise of the valve's slopes falls with a longer step, and with a longer
-one more neighbours fail (`docs/decisions/0013-kkt-residuals.md`)."""
+"""Between neighbours, of a variable's range: the noise of the valve's slopes falls with a longer step, but more
+neighbours fail (`docs/decisions/0013-kkt-residuals.md`)."""
 
 NODES = 5
 """Designs on a line, the middle one included."""

@@ -48,8 +48,8 @@ def optimality(
     """Measure a feasible design: min ‖Σ λ_i ∇F_i + Σ μ_j ∇G_j + Σ ν_b n_b‖ with λ, μ, ν ≥ 0 and Σ λ_i = 1.
 
     Variables count in parts of their ranges, objectives in their scales. Constraints, and bounds of the box, are
-    active that are reached within a step of the differences; a side on which a neighbour fails counts as such a bound.
-    A signed objective that is 0 within a step is kept there by a multiplier of either sign, outside of Σ λ_i = 1: its
+    active that are reached within a step of the differences; a side on which a neighbour fails counts as a bound. A
+    signed objective that is 0 within a step is kept there by a multiplier of either sign, outside of Σ λ_i = 1: its
     magnitude has no gradient at 0, and no better value either.
 
     Args:

@@ -1,7 +1,7 @@
 """May a store go on with this campaign? Only budgets, seeds and strategies may be added to.
 
-What touches no evaluation, `verification` and `parallel`, may be changed at will; and `model.deadline`, which counts
-for designs that are not yet logged.
+What touches no evaluation, `verification`, `optimality` and `parallel`, may be changed at will; and
+`model.deadline`, which counts for designs that are not yet logged.
 """
 
 from collections.abc import Iterator, Mapping
