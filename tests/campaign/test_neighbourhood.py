@@ -89,7 +89,7 @@ def test_the_fronts_of_the_runs_say_the_same_of_the_same_designs(whole):
 def test_what_was_simulated_is_kept_and_not_simulated_again(whole):
     before = kept(whole)
     points = (front(whole).kkt != "not_computed").sum()
-    assert len(before) == points * 12  # four a variable
+    assert len(before) == points * 16  # four a variable, and four
     modified = [path.stat().st_mtime_ns for path in (whole / "optimality").iterdir()]
     run(whole)
     assert [path.stat().st_mtime_ns for path in (whole / "optimality").iterdir()] == modified
@@ -118,7 +118,7 @@ def test_a_signal_stops_it_and_the_next_call_ends_with_the_same_bytes(whole, tmp
         patch.setattr(Parts, "append", counted)
         with pytest.raises(InterruptedRunError, match="the line that goes on"):
             run(folder)
-    assert len(kept(folder)) == at * 12
+    assert len(kept(folder)) == at * 16
     assert (front(folder).kkt == "not_computed").all()
     run(folder)
     assert_same(folder, whole)

@@ -13,7 +13,11 @@ from divideropt.problem import Constraint, Evaluations, Problem
 
 KINK = 0.1
 """A slope that jumps by more than this share of its gradient is no slope; of an objective's gradient below 1, by more
-than this itself."""
+than this itself. Unless it is the noise: """
+
+NOISE = 10.0 * math.sqrt(20.0)
+"""so many of its standard deviations make no kink, ten of those of a third difference. Ten is much, but they are
+estimated from five values."""
 
 MOST_STEPS = 100
 """Of the least squares, per unknown; some three are usual."""
@@ -43,7 +47,12 @@ NOT_DEFINED = Optimality(math.nan, math.nan)
 
 
 def optimality(
-    problem: Problem, scales: FloatArray, design: FloatArray, quantities: FloatArray, around: Evaluations
+    problem: Problem,
+    scales: FloatArray,
+    design: FloatArray,
+    quantities: FloatArray,
+    around: Evaluations,
+    step: float = STEP,
 ) -> Optimality:
     """Measure a feasible design: min ‖Σ λ_i ∇F_i + Σ μ_j ∇G_j + Σ ν_b n_b‖ with λ, μ, ν ≥ 0 and Σ λ_i = 1.
 
@@ -58,6 +67,7 @@ def optimality(
         design: Shape (d,), in the variables' units.
         quantities: What came out, shape (m,).
         around: Its `neighbours`, as simulated.
+        step: With which they were made.
 
     Returns:
         The residual; `NOT_DEFINED` at a kink of an objective or of an active constraint.
@@ -67,17 +77,21 @@ def optimality(
     columns = [places[q.name] for q in wanted]
     values, beside = quantities[columns], around.quantities[:, columns]
     usable = np.array([v.ok for v in around.verdicts], dtype=bool) & np.isfinite(beside).all(axis=1)
-    slopes = slopes_at(design, problem.space, values, beside, usable)
+    slopes = slopes_at(design, problem.space, values, beside, usable, step)
     if slopes is None:
         return NOT_DEFINED
     count = len(problem.objectives)
     terms = [
-        *(_objective(q, i, values[i], scales[i], slopes) for i, q in enumerate(wanted[:count])),
-        *(t for j, c in enumerate(problem.constraints, count) for t in _constraint(c, j, float(values[j]), slopes)),
+        *(_objective(q, i, values[i], scales[i], slopes, step) for i, q in enumerate(wanted[:count])),
+        *(
+            t
+            for j, c in enumerate(problem.constraints, count)
+            for t in _constraint(c, j, float(values[j]), slopes, step)
+        ),
     ]
     if any(term is None for term in terms):
         return NOT_DEFINED
-    walls = [_Term(normal, np.zeros_like(normal)) for normal in _walls(problem, design, slopes)]
+    walls = [_Term(normal, np.zeros_like(normal)) for normal in _walls(problem, design, slopes, step)]
     return _least([term for term in terms if term is not None] + walls)
 
 
@@ -111,37 +125,43 @@ def _least(terms: list[_Term]) -> Optimality:
     return Optimality(float(np.linalg.norm(gradients @ multipliers)), float(np.linalg.norm(errors @ multipliers)))
 
 
-def _objective(quantity: Quantity, place: int, value: float, scale: float, slopes: Slopes) -> _Term | None:
+def _objective(
+    quantity: Quantity, place: int, value: float, scale: float, slopes: Slopes, step: float
+) -> _Term | None:
     gradient, error = slopes.gradients[place] / scale, slopes.errors[place] / scale
     norm = float(np.linalg.norm(gradient))
-    if (slopes.jumps[place] / scale > KINK * max(norm, 1.0)).any():
+    if slopes.jumps[place].max() > max(KINK * max(norm, 1.0) * scale, NOISE * slopes.noise[place] / step):
         return None
     if not quantity.signed:
         return _Term(gradient, error, share=True)
-    if abs(value) / scale <= STEP * norm:
+    if abs(value) / scale <= step * norm:
         return _Term(gradient, error, free=True)
     return _Term(math.copysign(1.0, value) * gradient, error, share=True)
 
 
-def _constraint(constraint: Constraint, place: int, value: float, slopes: Slopes) -> Iterator[_Term | None]:
+def _constraint(
+    constraint: Constraint, place: int, value: float, slopes: Slopes, step: float
+) -> Iterator[_Term | None]:
     """The active bounds of a constraint, as gradients of length 1: its multiplier may be any. None at a kink."""
     gradient = slopes.gradients[place]
     norm = float(np.linalg.norm(gradient))
     signed = constraint.quantity.signed
-    steepest = max(norm, float(slopes.jumps[place].max()))
-    reach = STEP * steepest
+    jump = float(slopes.jumps[place].max())
+    kinked = jump > max(KINK * norm, NOISE * slopes.noise[place] / step)
+    steepest = max(norm, jump) if kinked else norm
+    reach = step * steepest
     size, sign = (abs(value), math.copysign(1.0, value)) if signed else (value, 1.0)
     for side, bound in ((-1.0, constraint.minimum), (1.0, constraint.maximum)):
         if steepest == 0.0 or bound is None or side * (bound - size) > reach:
             continue
-        kinked = (slopes.jumps[place] > KINK * norm).any() or (signed and size <= reach)
-        yield None if kinked else _Term(side * sign * gradient / norm, slopes.errors[place] / norm)
+        undefined = kinked or (signed and size <= reach)
+        yield None if undefined else _Term(side * sign * gradient / norm, slopes.errors[place] / norm)
 
 
-def _walls(problem: Problem, design: FloatArray, slopes: Slopes) -> Iterator[FloatArray]:
+def _walls(problem: Problem, design: FloatArray, slopes: Slopes, step: float) -> Iterator[FloatArray]:
     """Outward normals of the sides to which there is no way: bounds within a step, and failing neighbours."""
     space = problem.space
-    near = STEP * (space.upper - space.lower)
+    near = step * (space.upper - space.lower)
     sides = ((-1.0, design - space.lower <= near), (1.0, space.upper - design <= near))
     for (direction, on), failing in zip(sides, slopes.failing, strict=True):
         for i in np.flatnonzero(on | failing):

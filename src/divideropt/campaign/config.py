@@ -123,7 +123,7 @@ class OptimalityConfig(Section):
 
     points: Annotated[int, Field(strict=True, ge=0, le=10**6)]
     """How many of the combined front, drawn at random with a fixed seed, besides its extremes and the points nearest
-    the goals; 0 for none at all. Each takes four simulations a variable."""
+    the goals; 0 for none at all. Each takes four simulations a variable, and four."""
 
 
 FEW_POINTS = 200
