@@ -33,8 +33,8 @@ class Slopes:
         jumps: How far the slope jumps within reach of the neighbours if there is a kink, shape (m, d). A kink makes
             third differences of a third of its jump times the step, or more; curvature makes none.
         errors: Standard deviation of the gradients, of the noise that fourth differences show, shape (m, d).
-        noise: Standard deviation of the results from a straight line through close neighbours, shape (m,); 0 where one
-            of these failed. It misses noise that comes in steps, which the fourth differences show.
+        noise: Standard deviation of the results from a straight line through close neighbours, shape (m,); 0 where
+            one of these failed. It misses noise that comes in steps, which the fourth differences show.
         failing: Whether there are neighbours below, and above, that could not be simulated, shape (2, d).
     """
 
@@ -116,8 +116,8 @@ def slopes_at(
 
 
 _FOURTH = 70.0
-"""Variance of a fourth difference of independent values of variance 1: (2 k)!/(k!)^2, from which Moré and Wild (Estimating
-computational noise, 2011) take a computation's noise."""
+"""Variance of a fourth difference of independent values of variance 1: (2 k)!/(k!)^2, from which Moré and Wild
+(Estimating computational noise, 2011) take a computation's noise."""
 
 
 def _spread(values: FloatArray) -> FloatArray:
