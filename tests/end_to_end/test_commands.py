@@ -107,6 +107,9 @@ def test_status_says_what_is_done_and_best(finished):
     words = call("status", "results/small", folder=folder).stdout
     assert "nsga2-1: 64 of 64 evaluations" in words
     assert f"{said['verified']} of them verified, 0 deviating" in words
+    assert said["kkt"]["computed"] == (front.kkt == "computed").sum() > 0
+    assert said["kkt"]["median"] == pytest.approx(front.kkt_residual.median(), rel=1e-12)
+    assert f"KKT residual of {said['kkt']['computed']} front points: median" in words
 
 
 def test_report_writes_it_again_the_same(finished):
