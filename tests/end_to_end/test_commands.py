@@ -73,7 +73,8 @@ def test_run_writes_fronts_and_a_report_and_says_where(finished):
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert done.stderr.splitlines()[-1] == "report: results/small/report.html"
-    assert " front points, 0 deviate; largest deviation: steady_state_error " in done.stderr.splitlines()[-2]
+    assert " front points, 0 deviate; largest deviation: steady_state_error " in done.stderr.splitlines()[-3]
+    assert done.stderr.splitlines()[-2].startswith("KKT residual of ")
     store = folder / "results" / "small"
     front = pd.read_parquet(store / "fronts" / "combined.parquet")
     assert len(front) > 5
