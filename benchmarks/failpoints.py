@@ -40,6 +40,7 @@ strategies:
   nsga2: {population: 12, generations: GENERATIONS, seeds: [1]}
   complex: {points: 6, evaluations: 40, seeds: [1]}
 verification: {sample: 3}
+optimality: {points: 3}
 parallel: {workers: 1, backend: sequential}
 """
 
@@ -168,7 +169,7 @@ def tables(store: Path) -> dict[str, pd.DataFrame]:
     """Read what a store holds, by pandas alone."""
     logs = {f"log {p.name}": p for p in sorted((store / "evaluations").glob("[!.]*"))}
     fronts = {f"front {p.stem}": p for p in sorted((store / "fronts").glob("[!.]*"))}
-    folders = {name: store / name for name in ("fronts", "verification") if (store / name).exists()}
+    folders = {name: store / name for name in ("fronts", "verification", "optimality") if (store / name).exists()}
     return {name: pd.read_parquet(path) for name, path in (logs | fronts | folders).items()}
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from divideropt.analysis import Tally
+    from divideropt.analysis import Convergence, Tally
     from divideropt.campaign.config import Campaign
 
 # Everything else is imported by the command that needs it, so that --help answers at once.
@@ -98,6 +98,7 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) ->
         raise
     _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.front.points} designs)")
     _say(_counted(done.front))
+    _say(_converged(done.kkt))
     _say(f"report: {write_report(done.store, logs=done.logs)}")
     if done.failures:
         raise _incomplete(folder, done.failures, len(done.logs), again)
@@ -138,6 +139,7 @@ def status(store: Path, as_json: bool) -> None:
         return
     verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
     lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
+    lines += [] if found.kkt is None else [_converged(found.kkt)]
     for item in found.runs:
         outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
@@ -304,6 +306,15 @@ def _counted(count: "Tally") -> str:
     largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
     words = f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
     return f"{words}; largest deviation: {largest}" if largest else words
+
+
+def _converged(kkt: "Convergence") -> str:
+    """Say how near to stationary front points are."""
+    others = f", {kkt.not_defined} not defined" if kkt.not_defined else ""
+    if kkt.median is None:
+        return f"KKT residual of 0 front points{others}"
+    figures = f"median {kkt.median:.2g}, 95th percentile {kkt.high:.2g}"
+    return f"KKT residual of {kkt.computed} front points: {figures}{others}"
 
 
 def _incomplete(folder: Path, failures: "Mapping[str, str]", runs: int, again: str) -> IncompleteRunsError:

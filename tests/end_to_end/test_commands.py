@@ -73,7 +73,8 @@ def test_run_writes_fronts_and_a_report_and_says_where(finished):
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert done.stderr.splitlines()[-1] == "report: results/small/report.html"
-    assert " front points, 0 deviate; largest deviation: steady_state_error " in done.stderr.splitlines()[-2]
+    assert " front points, 0 deviate; largest deviation: steady_state_error " in done.stderr.splitlines()[-3]
+    assert done.stderr.splitlines()[-2].startswith("KKT residual of ")
     store = folder / "results" / "small"
     front = pd.read_parquet(store / "fronts" / "combined.parquet")
     assert len(front) > 5
@@ -109,6 +110,9 @@ def test_status_says_what_is_done_and_best(finished):
     assert [r["reason"] for r in said["runs"]] == ["budget", "budget"]
     assert "  ended: its budget of 64 evaluations is spent" in words
     assert f"{said['verified']} of them verified, 0 deviating" in words
+    assert said["kkt"]["computed"] == (front.kkt == "computed").sum() > 0
+    assert said["kkt"]["median"] == pytest.approx(front.kkt_residual.median(), rel=1e-12)
+    assert f"KKT residual of {said['kkt']['computed']} front points: median" in words
 
 
 def test_report_writes_it_again_the_same(finished):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from divideropt.analysis import Verified
+from divideropt.analysis import Kkt, Optimality, Verified
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity
@@ -14,12 +14,12 @@ from divideropt.problem import DesignSpace, Variable
 from divideropt.report import Curve, ResponseCurves, response_page, write_report
 from divideropt.report.data import read_report
 from divideropt.report.display import axis_of, number, shown_as
-from divideropt.report.figures import front_3d, hypervolume, parallel_coordinates, projections
+from divideropt.report.figures import front_3d, hypervolume, parallel_coordinates, projections, residuals
 from divideropt.report.front import Design, leanings
 from divideropt.report.page import render_report
 from divideropt.report.responses import MOST_POINTS
 from divideropt.report.sampling import spread, thin
-from divideropt.report.tables import front_table
+from divideropt.report.tables import LAST, front_table, residual_cell
 from divideropt.store import Store, TableSchema
 
 HOSTILE = "</script><script>window.hacked=1</script>"
@@ -272,3 +272,35 @@ def test_a_design_that_deviates_is_said_so_above_the_table(data):
 def test_a_model_without_a_reference_has_nothing_verified(spheres):
     text = write_report(spheres(2)).read_text("utf-8")
     assert "No design was simulated again" in text
+
+
+def test_the_page_says_how_near_to_stationary_the_front_is(store, data):
+    stored = store.read_front("combined", schema_of(store)).to_pandas()
+    known = stored.kkt_residual.dropna()
+    assert 0 < len(known) == data.kkt.computed == sum(d.optimality is not None for d in data.front)
+    text = render_report(data)
+    assert f"median {number(known.median(), 2)}, 95th percentile {number(known.quantile(0.95), 2)}" in text
+    assert "KKT residual" in [heading.words for heading in front_table(data, 1000).headings]
+    lines = {trace.name: trace for trace in residuals(data).data}
+    for strategy, line in lines.items():
+        own = known[stored.run.str.startswith(strategy)]
+        np.testing.assert_allclose(line.x, np.sort(own), rtol=1e-4)
+        assert line.y[-1] == 1.0
+
+
+def test_a_cell_says_what_is_known_of_a_residual(data):
+    first = data.front[0]
+    for kkt, found, text, order in (
+        (Kkt.COMPUTED, Optimality(0.01234, 1e-5), "0.012", "0.01234"),
+        (Kkt.COMPUTED, Optimality(1e-9, 1e-5), "< 1.0·10⁻⁵", "1e-09"),
+        (Kkt.NOT_DEFINED, None, "not defined", LAST),
+        (Kkt.NOT_COMPUTED, None, "–", LAST),
+    ):
+        cell = residual_cell(replace(first, kkt=kkt, optimality=found), data)
+        assert (cell.text, cell.order) == (text, order)
+
+
+def test_where_no_residual_was_asked_for_the_page_does_not_speak_of_them(spheres):
+    text = write_report(spheres(2)).read_text("utf-8")
+    assert 'id="optimality"' not in text
+    assert "KKT residual" not in text

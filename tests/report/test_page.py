@@ -74,6 +74,11 @@ def test_each_run_has_a_line_of_hypervolume(report, data):
     assert report.count("#hypervolume .scatterlayer path.js-line") == len(data.runs)
 
 
+def test_each_strategy_has_a_line_of_residuals(report, data):
+    strategies = {design.strategy for design in data.front if design.optimality is not None}
+    assert report.count("#residuals .scatterlayer path.js-line") == len(strategies) > 0
+
+
 def test_the_response_is_drawn_beside_the_three_sets(report):
     assert report.page.locator("#response").is_visible()
     assert len(report.lines()) == 2 + 2 * 3

@@ -93,9 +93,10 @@ def test_a_front_has_the_columns_with_their_meaning_and_no_other(tmp_path):
     store.write_front("nsga2-1", front)
     assert store.read_front("nsga2-1", SCHEMA).equals(front)
     found = pq.read_schema(tmp_path / "fronts" / "nsga2-1.parquet")
-    assert found.names[-3:] == ["verified", "deviation_f1", "deviation_f2"]
-    for name in found.names[-3:]:
-        assert found.field(name).metadata[b"role"] == b"verification"
+    assert found.names[-6:-3] == ["verified", "deviation_f1", "deviation_f2"]
+    assert found.names[-3:] == ["kkt", "kkt_residual", "kkt_floor"]
+    for name in found.names[-6:]:
+        assert found.field(name).metadata[b"role"] == (b"optimality" if "kkt" in name else b"verification")
         assert found.field(name).metadata[b"description"]
     assert found.field("deviation_f2").metadata[b"unit"] == b""
     store.write_front("nsga2-1", front.drop_columns(["verified"]))

@@ -100,11 +100,7 @@ def marked(front: pa.Table, reference: pa.Table, problem: Problem, schema: Table
     words = np.full(front.num_rows, str(Verified.NO), dtype=object)
     words[known] = np.where(agree, str(Verified.YES), str(Verified.DEVIATES))
     columns = {"verified": words} | {deviation_of(n): deviations[:, i] for i, n in enumerate(schema.objectives)}
-    arrays = [
-        pa.array(columns[f.name], f.type, from_pandas=True) if f.name in columns else front[f.name]
-        for f in schema.front
-    ]
-    return pa.Table.from_arrays(arrays, schema=schema.front)
+    return schema.front_rows(front, columns)
 
 
 def tally(front: pa.Table, schema: TableSchema) -> Tally:

@@ -119,6 +119,24 @@ class VerificationConfig(Section):
         return self.tolerance / 100.0
 
 
+class OptimalityConfig(Section):
+    """Of which front points `divideropt run` simulates the neighbours, for the residual of the KKT conditions."""
+
+    points: Annotated[int, Field(strict=True, ge=0, le=10**6)]
+    """How many of the combined front, drawn at random with a fixed seed, besides its extremes and the points nearest
+    the goals; 0 for none at all. Each takes four simulations a variable, and four."""
+
+
+FEW_POINTS = 200
+"""Of which neighbours are simulated where a campaign does not say: some seconds by the valve's compiled solver."""
+
+
+def _affordable(model: object) -> OptimalityConfig:
+    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes."""
+    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock"
+    return OptimalityConfig(points=FEW_POINTS if quick else 0)
+
+
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAME.fullmatch(value):
         raise ValueError(
@@ -221,6 +239,8 @@ class Campaign(Section):
     """What runs, in this order."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
+    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
+    """How near to stationary front points are; 200 points by the valve's compiled solver, by others none."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 

@@ -1,4 +1,4 @@
-"""Runs a campaign: its runs in parallel, then the fronts, whose points of interest are verified."""
+"""Runs a campaign: its runs in parallel, then the fronts, of whose points some are verified and explored around."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,16 @@ from typing import TextIO
 
 import numpy as np
 
-from divideropt.analysis import Summary, Tally, combined_front, summarise, tally, worth_verifying
+from divideropt.analysis import (
+    Convergence,
+    Summary,
+    Tally,
+    combined_front,
+    convergence,
+    summarise,
+    tally,
+    worth_verifying,
+)
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew, ProcessDiedError
 from divideropt.campaign.dump import dump_campaign
@@ -17,6 +26,7 @@ from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import RESTARTS, Mishaps
+from divideropt.campaign.neighbourhood import Neighbourhood, with_residuals
 from divideropt.campaign.plan import Run, build_problem, dividers, plan_runs
 from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
@@ -35,12 +45,14 @@ class Outcomes:
     Attributes:
         store: The store.
         front: The designs on the combined front, counted.
+        kkt: How near to stationary they are.
         logs: Each run's log, summed up.
         failures: Why runs were given up, by their names; empty where all came to their end.
     """
 
     store: Store
     front: Tally
+    kkt: Convergence
     logs: Mapping[str, Summary]
     failures: Mapping[str, str]
 
@@ -68,7 +80,7 @@ class Runner:
         self._words = words
 
     def run(self, *, fresh: bool = False) -> Outcomes:
-        """Run what is not yet in the store, write the fronts, and verify some of their points.
+        """Run what is not yet in the store, write the fronts, verify some of their points and compute KKT residuals.
 
         Args:
             fresh: Whether to move an existing store aside first.
@@ -82,7 +94,7 @@ class Runner:
             StoreError: The store belongs to another campaign, or is damaged.
             DiskError: The disk refused.
             InterruptedRunError: A signal stopped it.
-            WorkerLostError: Worker processes died again and again while points were verified.
+            WorkerLostError: Worker processes died again and again after the runs.
             NoFeasibleDesignError: No design is feasible.
         """
         problem = build_problem(self._campaign)
@@ -95,7 +107,8 @@ class Runner:
             changed = self._store.keep_fingerprint()
             if changed is not None:
                 say(changed, self._words)
-            self._store.verification(verifier.schema).table()  # damage is said before hours are spent, not after
+            for kept in (self._store.verification, self._store.optimality):
+                kept(verifier.schema).table()  # damage is said before hours are spent, not after
             with hired(self._campaign.parallel, self._workers, self._store.folder) as crew:
                 warm_up(problem)
                 endings = self._drive(problem, crew)
@@ -208,10 +221,13 @@ class Runner:
         fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)
         wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
-        written = verifier.verify(fronts | {"combined": combined}, wanted, crew)
+        known = with_residuals(fronts | {"combined": combined}, self._campaign, problem, self._store)
+        explorer = Neighbourhood(self._campaign, problem, self._store, self._words, self._interruption)
+        written = explorer.explore(verifier.verify(known, wanted, crew), crew)
         if combined.num_rows == 0 and not failures:
             raise NoFeasibleDesignError(
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
             )
-        return Outcomes(self._store, tally(written["combined"], schema), logs, failures)
+        combined = written["combined"]
+        return Outcomes(self._store, tally(combined, schema), convergence(combined), logs, failures)

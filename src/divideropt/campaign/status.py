@@ -2,10 +2,20 @@
 
 from dataclasses import dataclass
 
-from divideropt.analysis import combined_front, hypervolume_history, marked, repeatable, summarise, tally
+from divideropt.analysis import (
+    Convergence,
+    combined_front,
+    convergence,
+    hypervolume_history,
+    marked,
+    repeatable,
+    summarise,
+    tally,
+)
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
+from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.store import Store, TableSchema
@@ -54,6 +64,7 @@ class StoreStatus:
         front: Designs on the combined front, None before it is written.
         verified: How many of them came out the same when they were simulated again by the model's reference.
         deviating: How many did not.
+        kkt: How near to stationary its designs are, None before it is written.
         damage: What is wrong with the stored front, where that was made again from the logs; None where nothing is.
     """
 
@@ -62,6 +73,7 @@ class StoreStatus:
     front: int | None
     verified: int | None
     deviating: int | None
+    kkt: Convergence | None
     damage: str | None
 
 
@@ -103,8 +115,10 @@ def read_status(store: Store) -> StoreStatus:
         damage = str(error)
         combined = combined_front([logs[name].front for name in sorted(logs)], problem, schema)
         known = store.verification(schema).table()
+        combined = with_residuals({"combined": combined}, campaign, problem, store)["combined"]
         front = marked(combined, known, problem, schema, campaign.verification.share)
     if front is None:
-        return StoreStatus(campaign.name, tuple(runs), None, None, None, None)
+        return StoreStatus(campaign.name, tuple(runs), None, None, None, None, None)
     count = tally(front, schema)
-    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate, damage)
+    kkt = convergence(front)
+    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate, kkt, damage)

@@ -13,6 +13,7 @@ from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
+from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
 from divideropt.campaign.progress import Counter, say
 from divideropt.campaign.reference import reference_problem
@@ -182,7 +183,8 @@ def _fronts(
     except DamagedFileError as error:
         say(f"{error}; here the fronts are made again", words)
         runs = {name: summarise(store.log(name, schema).read(), problem, schema).front for name in sorted(names[1:])}
-        found = {"combined": combined_front(list(runs.values()), problem, schema), **runs}
+        together = {"combined": combined_front(list(runs.values()), problem, schema), **runs}
+        found = {**with_residuals(together, campaign, problem, store)}
     if found["combined"] is None:
         raise UsageError(f"{store.folder}: there are no fronts yet; run the campaign to its end first")
     return {name: front for name, front in found.items() if front is not None}

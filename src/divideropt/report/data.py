@@ -8,11 +8,12 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 import pyarrow as pa
 
-from divideropt.analysis import Summary, Verified, combined_front, marked, summarise
+from divideropt.analysis import Convergence, Summary, Verified, combined_front, convergence, marked, summarise
 from divideropt.analysis.summary import Best
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
+from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
@@ -72,6 +73,7 @@ class ReportData:
         constraints: The constraints, a sentence each.
         runs: The runs, in the campaign's order.
         front: The combined front, the best by goal attainment first.
+        kkt: How near to stationary its designs are.
         tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
         best: The best of each strategy by goal attainment; empty where there are no goals.
@@ -89,6 +91,7 @@ class ReportData:
     constraints: tuple[str, ...]
     runs: tuple[RunFacts, ...]
     front: tuple[Design, ...]
+    kkt: Convergence
     tolerance: float
     drawn: tuple[int, ...]
     best: tuple[Design, ...]
@@ -145,6 +148,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     facts = tuple(read_run(run, logs[run.name], reference, endings[run.name]) for run in runs)
     table, notes = _front(store, logs, problem, schema)
     known = store.verification(schema).table()
+    table = with_residuals({"combined": table}, campaign, problem, store)["combined"]
     table = marked(table, known, problem, schema, campaign.verification.share)
     front = designs_of(table, problem, schema, strategies)
     best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
@@ -157,6 +161,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _constraints(problem),
         facts,
         front,
+        convergence(table),
         campaign.verification.tolerance,
         _drawn(front),
         best,

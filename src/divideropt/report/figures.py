@@ -21,6 +21,9 @@ MOST_PROJECTIONS = 6
 SELECTION = "selected"
 """Name of the trace that rings the selected design; the page fills it."""
 
+SMALLEST = 1e-12
+"""Residuals are drawn no lower, where the axis would have no place for zero."""
+
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif"
 """Fonts that are there: none is fetched."""
 
@@ -104,6 +107,30 @@ def least_objective(data: ReportData) -> go.Figure:
     facts = data.objectives[0]
     histories = {run.name: [facts.axis.scaled(value) for value in run.least] for run in data.runs}
     return _histories(data, histories, f"least {label(facts)}", zero=False)
+
+
+def residuals(data: ReportData) -> go.Figure:
+    """Draw how the KKT residuals of each strategy's designs on the front are distributed."""
+    figure = go.Figure(layout=layout(height=340, margin={"l": 64, "r": 16, "t": 12, "b": 52}))
+    for name, mark in marks(data.strategies).items():
+        found = [d.optimality for d in data.front if d.strategy == name and d.optimality is not None]
+        if not found:
+            continue
+        values = np.sort([max(item.residual, item.floor, SMALLEST) for item in found])
+        figure.add_scatter(
+            x=np.array([rounded(value) for value in values]),
+            y=np.arange(1, len(values) + 1) / len(values),
+            name=plain(name),
+            mode="lines",
+            line={"color": mark.colour, "width": 2, "shape": "hv"},
+            hovertemplate=f"{plain(name)}<br>%{{y:.0%}} at most %{{x:.2~e}}<extra></extra>",
+        )
+    figure.update_xaxes(title_text="KKT residual", type="log", exponentformat="power", dtick=1)
+    figure.update_yaxes(title_text="share of designs", range=[0, 1.02], tickformat=".0%")
+    figure.update_layout(
+        showlegend=True, legend={"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"}
+    )
+    return figure
 
 
 def label(facts: ObjectiveFacts | VariableFacts, *, line_break: bool = False) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
-from divideropt.analysis import Verified
+from divideropt.analysis import Kkt, Optimality, Verified
 from divideropt.errors import StoreError, printable
 from divideropt.models.base import FloatArray
 from divideropt.problem import AGGREGATES, DesignSpace, Problem
@@ -42,6 +42,8 @@ class Design:
         met: Whether each objective's goal is met, None where it has none.
         verified: What is known of simulating it again by the model's reference.
         deviation: The largest deviation of an objective there, None where not known.
+        kkt: What is known of its KKT residual.
+        optimality: The residual and its floor, None where not computed or not defined.
         valid: Whether the model vouches for it (`within_validity`), None where it does not say.
     """
 
@@ -54,6 +56,8 @@ class Design:
     met: tuple[bool | None, ...]
     verified: Verified = Verified.NO
     deviation: float | None = None
+    kkt: Kkt = Kkt.NOT_COMPUTED
+    optimality: Optimality | None = None
     valid: bool | None = None
 
 
@@ -150,12 +154,19 @@ def _attainment(objectives: FloatArray, problem: Problem) -> FloatArray | None:
     return AGGREGATES["goal_attainment"](objectives, problem.objectives)
 
 
-def _known(table: pa.Table, schema: TableSchema) -> list[tuple[Verified, float | None]]:
+def _known(table: pa.Table, schema: TableSchema) -> list[tuple[Verified, float | None, Kkt, Optimality | None]]:
+    """What a front says of each design besides its results; of other tables that nothing is known."""
     if "verified" not in table.column_names:
-        return [(Verified.NO, None)] * table.num_rows
+        return [(Verified.NO, None, Kkt.NOT_COMPUTED, None)] * table.num_rows
     deviations = zip(*(table[deviation_of(name)].to_pylist() for name in schema.objectives), strict=True)
     largest = (max((d for d in row if d is not None), default=None) for row in deviations)
-    return [(Verified(word), value) for word, value in zip(table["verified"].to_pylist(), largest, strict=True)]
+    verified, words, residuals, floors = (
+        table[name].to_pylist() for name in ("verified", "kkt", "kkt_residual", "kkt_floor")
+    )
+    return [
+        (Verified(word), value, Kkt(kkt), None if residual is None else Optimality(residual, floor))
+        for word, value, kkt, residual, floor in zip(verified, largest, words, residuals, floors, strict=True)
+    ]
 
 
 def _met(row: FloatArray, problem: Problem) -> tuple[bool | None, ...]:

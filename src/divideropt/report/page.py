@@ -14,6 +14,7 @@ from divideropt.report.figures import (
     least_objective,
     parallel_coordinates,
     projections,
+    residuals,
 )
 from divideropt.report.front import Design
 from divideropt.report.palette import marks
@@ -77,6 +78,8 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found += _front_figures(data)
     if any(run.hypervolumes for run in data.runs):
         found.append(drawn("hypervolume", hypervolume(data)))
+    if data.kkt.computed:
+        found.append(drawn("residuals", residuals(data)))
     if len(data.objectives) == 1:
         found.append(drawn("least", least_objective(data)))
     if data.front and data.responses is not None:

@@ -3,11 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from divideropt.analysis import Verified
+from divideropt.analysis import Kkt, Verified
 from divideropt.models import Outcome
 from divideropt.report.data import ReportData
 from divideropt.report.display import number
 from divideropt.report.front import Design
+
+LAST = "1e300"
+"""What a cell without a number is sorted by: beyond all that have one."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +54,29 @@ def front_table(data: ReportData, most: int) -> Table:
     table = _designs(data, designs, Heading("design", numeric=False))
     first, *others = table.headings
     verified = Heading("verified", title="simulated again by the model's reference", numeric=False)
+    headings, more = [first, verified], [verified_cell]
+    if any(design.kkt is not Kkt.NOT_COMPUTED for design in data.front):
+        headings.append(Heading("KKT residual", title="rate at which one direction improves every objective"))
+        more.append(residual_cell)
     rows = tuple(
-        Row(row.design_id, (row.cells[0], Cell(verified_words(design, data), design.verified), *row.cells[1:]))
+        Row(row.design_id, (row.cells[0], *(cell(design, data) for cell in more), *row.cells[1:]))
         for row, design in zip(table.rows, designs, strict=True)
     )
-    return Table((first, verified, *others), rows)
+    return Table((*headings, *others), rows)
+
+
+def verified_cell(design: Design, data: ReportData) -> Cell:
+    """Say what is known of simulating a design again."""
+    return Cell(verified_words(design, data), design.verified)
+
+
+def residual_cell(design: Design, data: ReportData) -> Cell:
+    """Say what is known of a design's residual; of one below its floor only that it is."""
+    if design.optimality is None:
+        return Cell("not defined" if design.kkt is Kkt.NOT_DEFINED else "–", LAST)
+    residual, floor = design.optimality.residual, design.optimality.floor
+    text = number(residual, 2) if residual > floor else f"< {number(floor, 2)}"
+    return Cell(text, repr(residual))
 
 
 def verified_words(design: Design, data: ReportData) -> str:

@@ -1,7 +1,7 @@
 """The columns of the tables, with unit, symbol and role in each column's metadata."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -17,7 +17,7 @@ SCHEMA_VERSION = 2
 
 It grows by one with the first change since the last release after which an older store cannot be read as it was:
 other columns in a log or a front, another meaning of a column, another quantity in a model. Later changes of the same
-release share the number. Version 2: fronts say which points were verified.
+release share the number. Version 2: fronts say which points were verified, and how near to stationary they are.
 """
 
 VERIFIED = {
@@ -36,6 +36,20 @@ DEVIATION = (
     "null where not simulated again or not defined"
 )
 
+KKT = {
+    "computed": "the Karush-Kuhn-Tucker residual was computed from simulations of the design's neighbours",
+    "not_defined": "they show a kink, or fail on both sides, so there are no gradients",
+    "not_computed": "not asked for, or not on the combined front",
+}
+"""What the words in a front's `kkt` mean."""
+
+KKT_RESIDUAL = (
+    "rate at which one direction improves every objective at least: parts of the combined front's extent in each, "
+    "for a way of one range of the variables; 0 where the design is Pareto-stationary"
+)
+
+KKT_FLOOR = "what the noise of the model may make of the residual; a residual below is zero within the noise"
+
 _VERSION_KEY = b"divideropt.schema_version"
 
 
@@ -49,6 +63,7 @@ class Role(StrEnum):
     QUANTITY = "quantity"
     OUTCOME = "outcome"
     VERIFICATION = "verification"
+    OPTIMALITY = "optimality"
 
 
 @dataclass(frozen=True)
@@ -100,10 +115,14 @@ class TableSchema:
 
     @property
     def front(self) -> pa.Schema:
-        """A front's columns: the results, and whether simulating the design again gave the same."""
-        meaning = "; ".join(f"{word}: {says}" for word, says in VERIFIED.items())
-        fields = [_text("verified", Role.VERIFICATION, meaning)]
+        """A front's columns: the results, whether simulating the design again gave the same, and its KKT residual."""
+        fields = [_text("verified", Role.VERIFICATION, _meaning(VERIFIED))]
         fields += [_number(deviation_of(name), "", "", DEVIATION, Role.VERIFICATION) for name in self.objectives]
+        fields += [
+            _text("kkt", Role.OPTIMALITY, _meaning(KKT)),
+            _number("kkt_residual", "", "", KKT_RESIDUAL, Role.OPTIMALITY),
+            _number("kkt_floor", "", "", KKT_FLOOR, Role.OPTIMALITY),
+        ]
         return pa.schema([*self.results, *fields], metadata=self.arrow.metadata)
 
     def log_rows(self, run: str, first: int, batch: int, batches: Sequence[Evaluations]) -> pa.Table:
@@ -117,6 +136,27 @@ class TableSchema:
     def result_rows(self, ids: Sequence[str], runs: Sequence[str], evaluations: Evaluations) -> pa.Table:
         """Word evaluations of named designs as rows of `results`; NaN becomes null."""
         return self._rows(self.results, evaluations, design_id=ids, run=runs)
+
+    def front_rows(self, table: pa.Table, columns: Mapping[str, object]) -> pa.Table:
+        """Word results as a front.
+
+        Args:
+            table: The results; of a front, with what it says besides.
+            columns: What to say instead, by column; NaN becomes null.
+
+        Returns:
+            The front; what neither says is that nothing is known.
+        """
+        unknown = {"verified": "no", "kkt": "not_computed"}
+        arrays = []
+        for field in self.front:
+            if field.name in columns:
+                arrays.append(pa.array(columns[field.name], field.type, from_pandas=True))
+            elif field.name in table.column_names:
+                arrays.append(table[field.name])
+            else:
+                arrays.append(pa.array([unknown.get(field.name)] * table.num_rows, field.type))
+        return pa.Table.from_arrays(arrays, schema=self.front)
 
     def _rows(self, schema: pa.Schema, evaluations: Evaluations, **keys: object) -> pa.Table:
         columns: dict[str, object] = keys | {
@@ -147,9 +187,10 @@ class TableSchema:
 
     def front_objection(self, table: pa.Table) -> str | None:
         """Say what a front holds that cannot be; None where nothing."""
-        unknown = set(table["verified"].unique().to_pylist()) - set(VERIFIED)
-        if unknown:
-            return f"`verified` is {min(map(str, unknown))!r}, not one of {', '.join(VERIFIED)}"
+        for name, words in (("verified", VERIFIED), ("kkt", KKT)):
+            unknown = set(table[name].unique().to_pylist()) - set(words)
+            if unknown:
+                return f"`{name}` is {min(map(str, unknown))!r}, not one of {', '.join(words)}"
         return self.objection(table)
 
     def evaluations(self, table: pa.Table) -> Evaluations:
@@ -175,6 +216,10 @@ def check_version(schema: pa.Schema, path: object) -> None:
             f"{path}: schema version {int(stated)}, this program writes {SCHEMA_VERSION}; go on with the divideropt "
             "that made it, or start anew (--fresh, which moves the old store aside)"
         )
+
+
+def _meaning(words: Mapping[str, str]) -> str:
+    return "; ".join(f"{word}: {says}" for word, says in words.items())
 
 
 def deviation_of(objective: str) -> str:

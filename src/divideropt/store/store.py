@@ -173,6 +173,12 @@ class Store:
         remedy = f"restore it, or delete {folder}, and its points are simulated again"
         return Parts(folder, schema.results, remedy, lambda table, first: schema.objection(table), self._check_owner)
 
+    def optimality(self, schema: TableSchema) -> Parts:
+        """Open the results of simulating front points' neighbours, each under the `design_id` of its point."""
+        folder = self._part_of_store("optimality")
+        remedy = f"restore it, or delete {folder}, and the neighbours are simulated again"
+        return Parts(folder, schema.results, remedy, lambda table, first: schema.objection(table), self._check_owner)
+
     @contextmanager
     def writing(self) -> Iterator[None]:
         """Hold the store for writing: as long as this lasts, this process and those it hands the store to publish.
@@ -242,7 +248,7 @@ class Store:
     def _make_ready(self) -> None:
         """Find what would be in the way later, and clear what killed writers left."""
         logs = self._part_of_store("evaluations")
-        parts = [self._part_of_store(name) for name in ("fronts", "verification", "endings")]
+        parts = [self._part_of_store(name) for name in ("fronts", "verification", "endings", "optimality")]
         self._part_of_store(self.status_folder.name)
         runs = [self._part_of_store(logs.name, path.name) for path in logs.glob("[!.]*")]
         for folder in (self.folder, logs, *runs, *parts):
