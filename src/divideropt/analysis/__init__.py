@@ -1,22 +1,57 @@
-"""What can be said of a store's evaluations: fronts, indicators."""
+"""What can be said of a store's evaluations: fronts, indicators, tests between strategies, choices."""
 
+from divideropt.analysis.attainment import attainment_surface, median_surface, worst_surface
+from divideropt.analysis.decision import Goals, achievement, bulge, knee_points, meeting_goals, pseudo_weights
 from divideropt.analysis.fronts import combined_front, nondominated
-from divideropt.analysis.indicators import best_attainment, hypervolume, hypervolume_history
+from divideropt.analysis.goal_directions import gaps, reached
+from divideropt.analysis.indicators import (
+    additive_epsilon,
+    best_attainment,
+    hypervolume,
+    hypervolume_contributions,
+    hypervolume_history,
+    igd_plus,
+    multiplicative_epsilon,
+)
+from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
+from divideropt.analysis.scale import Scale
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
+    "Goals",
+    "PairTest",
+    "Scale",
     "Summary",
     "Tally",
     "Verified",
+    "achievement",
+    "additive_epsilon",
+    "attainment_surface",
     "best_attainment",
+    "bulge",
     "combined_front",
+    "effect_size",
+    "gaps",
+    "holm",
     "hypervolume",
+    "hypervolume_contributions",
     "hypervolume_history",
+    "igd_plus",
+    "knee_points",
     "marked",
+    "median_surface",
+    "meeting_goals",
+    "multiplicative_epsilon",
     "nondominated",
+    "pair_tests",
+    "probability_above",
+    "pseudo_weights",
+    "reached",
     "repeatable",
+    "several_test",
     "summarise",
     "tally",
+    "worst_surface",
     "worth_verifying",
 ]
