@@ -1,6 +1,8 @@
 """What can be said of a store's evaluations: fronts, indicators, tests between strategies, choices."""
 
 from divideropt.analysis.attainment import attainment_surface, median_surface, worst_surface
+from divideropt.analysis.choice import Choice, choose
+from divideropt.analysis.comparison import INDICATORS, Comparison, Contender, Indicator, Score, Tests, compare
 from divideropt.analysis.decision import Goals, achievement, bulge, knee_points, meeting_goals, pseudo_weights
 from divideropt.analysis.fronts import combined_front, nondominated
 from divideropt.analysis.goal_directions import gaps, reached
@@ -14,23 +16,32 @@ from divideropt.analysis.indicators import (
     multiplicative_epsilon,
 )
 from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
-from divideropt.analysis.scale import Scale
+from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
+    "INDICATORS",
+    "Choice",
+    "Comparison",
+    "Contender",
     "Goals",
+    "Indicator",
     "PairTest",
     "Scale",
+    "Score",
     "Summary",
     "Tally",
+    "Tests",
     "Verified",
     "achievement",
     "additive_epsilon",
     "attainment_surface",
     "best_attainment",
     "bulge",
+    "choose",
     "combined_front",
+    "compare",
     "effect_size",
     "gaps",
     "holm",
@@ -48,6 +59,7 @@ __all__ = [
     "probability_above",
     "pseudo_weights",
     "reached",
+    "region",
     "repeatable",
     "several_test",
     "summarise",

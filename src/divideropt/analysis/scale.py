@@ -3,8 +3,29 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
+
+
+def region(front: FloatArray, reference: FloatArray | None) -> NDArray[np.bool_]:
+    """Mark the part of a front by which to scale: what is within the reference point, as for the hypervolume.
+
+    Fronts have tails that nobody looks at, and their extents would make all else small.
+
+    Args:
+        front: Non-dominated points, shape (n, k), to be minimised.
+        reference: The reference point, shape (k,), or None.
+
+    Returns:
+        Shape (n,); all, where there is no reference point, or where within it some objective has no extent.
+    """
+    everything = np.ones(len(front), dtype=bool)
+    if reference is None:
+        return everything
+    inside = np.asarray((front <= reference).all(axis=1))
+    enough = inside.any() and bool((Scale.of(front[inside]).extent > 0.0).all())
+    return inside if enough else everything
 
 
 @dataclass(frozen=True)
