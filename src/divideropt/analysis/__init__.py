@@ -2,7 +2,7 @@
 
 from divideropt.analysis.attainment import attainment_surface, median_surface, worst_surface
 from divideropt.analysis.choice import Choice, choose
-from divideropt.analysis.comparison import INDICATORS, Comparison, Contender, Indicator, Score, Tests, compare
+from divideropt.analysis.comparison import INDICATORS, Comparison, Contender, Indicator, Ranking, Score, compare
 from divideropt.analysis.decision import Goals, achievement, bulge, knee_points, meeting_goals, pseudo_weights
 from divideropt.analysis.fronts import combined_front, nondominated
 from divideropt.analysis.goal_directions import gaps, reached
@@ -28,11 +28,11 @@ __all__ = [
     "Goals",
     "Indicator",
     "PairTest",
+    "Ranking",
     "Scale",
     "Score",
     "Summary",
     "Tally",
-    "Tests",
     "Verified",
     "achievement",
     "additive_epsilon",

@@ -1,6 +1,6 @@
 """Every help to choose a design that can be had of a front, in one."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +32,21 @@ class Choice:
     goals: Goals
     wished: int | None
     weights: FloatArray
+
+    @property
+    def reasons(self) -> Mapping[int, tuple[str, ...]]:
+        """Why each design is worth a look, by its row, in words."""
+        found: dict[int, tuple[str, ...]] = {}
+
+        def add(row: int | None, why: str) -> None:
+            if row is not None:
+                found[row] = (*found.get(row, ()), why)
+
+        for place, row in enumerate(self.knees, 1):
+            add(row, "knee" if len(self.knees) == 1 else f"knee {place}")
+        add(self.goals.nearest, "farthest within the goals" if len(self.goals.meeting) else "nearest to the goals")
+        add(self.wished, "best by achievement")
+        return found
 
 
 def choose(F: FloatArray, objectives: Sequence[Objective]) -> Choice:

@@ -102,7 +102,7 @@ class Score:
 
 
 @dataclass(frozen=True)
-class Tests:
+class Ranking:
     """The groups compared by one indicator.
 
     Attributes:
@@ -132,7 +132,7 @@ class Comparison:
     evaluations: int
     scores: tuple[Score, ...]
     left_out: tuple[Contender, ...]
-    tests: tuple[Tests, ...]
+    tests: tuple[Ranking, ...]
 
     @property
     def groups(self) -> Mapping[str, tuple[Score, ...]]:
@@ -222,7 +222,7 @@ def _shares(fronts: Sequence[FloatArray]) -> list[int]:
     return [int(kept[begin:end].sum()) for begin, end in pairwise(ends)]
 
 
-def _tests(groups: Mapping[str, Sequence[Score]]) -> tuple[Tests, ...]:
+def _tests(groups: Mapping[str, Sequence[Score]]) -> tuple[Ranking, ...]:
     found = []
     for name, indicator in INDICATORS.items():
         samples = {
@@ -233,6 +233,6 @@ def _tests(groups: Mapping[str, Sequence[Score]]) -> tuple[Tests, ...]:
             found.append((name, several_test(list(samples.values())), pair_tests(samples)))
     corrected = iter(holm([pair.p for _, _, pairs in found for pair in pairs if pair.p is not None]))
     return tuple(
-        Tests(name, overall, tuple(pairs), tuple(None if pair.p is None else next(corrected) for pair in pairs))
+        Ranking(name, overall, tuple(pairs), tuple(None if pair.p is None else next(corrected) for pair in pairs))
         for name, overall, pairs in found
     )

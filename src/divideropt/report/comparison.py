@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from divideropt.analysis import INDICATORS, Score, Tests, effect_size
+from divideropt.analysis import INDICATORS, Ranking, Score, effect_size
 from divideropt.campaign.compare import Compared
 from divideropt.report.display import Axis, axis_of, number
 
@@ -118,7 +118,7 @@ def _strategies(compared: Compared) -> str:
     return f"After {comparison.evaluations} evaluations of each run: median (quartiles)\n" + _aligned(rows)
 
 
-def _tests(all_tests: Sequence[Tests]) -> str:
+def _tests(all_tests: Sequence[Ranking]) -> str:
     rows = [["indicator", "strategy", "against", "better in", "effect", "p", "p corrected"]]
     for tests in all_tests:
         for pair, corrected in zip(tests.pairs, tests.corrected, strict=True):
@@ -136,25 +136,16 @@ def _choice(compared: Compared) -> str:
     choice, front = compared.choice, compared.front
     axes = _axes(compared)
     goals = choice.goals
-    chosen: dict[int, list[str]] = {}
-    for place, row in enumerate(choice.knees, 1):
-        chosen.setdefault(row, []).append("knee" if len(choice.knees) == 1 else f"knee {place}")
-    if goals.nearest is not None:
-        chosen.setdefault(goals.nearest, []).append(
-            "farthest within goals" if len(goals.meeting) else "nearest goals"
-        )
-    if choice.wished is not None:
-        chosen.setdefault(choice.wished, []).append("best by achievement")
     part = "" if compared.designs == len(front) else f" that are within the reference point, of {compared.designs}"
     lines = [f"Choosing among {len(front)} designs of the best known front{part}"]
     if goals.nearest is not None:
         lines.append(_goal_words(compared))
     if not choice.knees:
         lines.append("the front has no knee")
-    if chosen:
+    if choice.reasons:
         head = ["design", "why", *(f"{axis.words} {axis.bracket}".rstrip() for axis in axes), "pseudo-weights"]
         rows = [head]
-        for row, why in chosen.items():
+        for row, why in choice.reasons.items():
             point = front[row]
             name = _name(compared, row)
             values = [axis.text(value) for axis, value in zip(axes, point.objectives, strict=True)]
@@ -207,7 +198,7 @@ def _spread(name: str, scores: Sequence[Score]) -> dict[str, float | None] | Non
     return None if found is None else _finite(dict(zip(("lower", "median", "upper"), found, strict=True)))
 
 
-def _test_rows(tests: Tests) -> list[dict[str, Any]]:
+def _test_rows(tests: Ranking) -> list[dict[str, Any]]:
     return [
         {
             "indicator": tests.indicator,

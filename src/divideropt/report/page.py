@@ -6,6 +6,7 @@ from typing import Any
 
 from divideropt.analysis import Summary
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
+from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.display import number, rounded
 from divideropt.report.document import drawn, render, save
 from divideropt.report.figures import (
@@ -63,7 +64,11 @@ def render_report(data: ReportData) -> str:
             "front": front_table(data, MOST_ROWS),
             "runs": runs_table(data),
             "outcomes": outcome_table(data),
+            "choosing": choosing_table(data),
+            "strategies": strategies_table(data),
+            "tests": rank_table(data),
         },
+        lacking=lacking(data),
         number=number,
         verified_words=lambda design: verified_words(design, data),
         most_rows=MOST_ROWS,
@@ -99,6 +104,7 @@ def _selection(data: ReportData) -> dict[str, Any]:
     """What the page needs to show a design that is selected."""
     responses = data.responses
     shown = [data.front[i] for i in data.drawn] + list(data.best)
+    shown += [candidate.design for candidate in data.choosing.candidates] if data.choosing else []
     return {
         "fields": [_field(facts.axis.label, None) for facts in data.variables]
         + [
