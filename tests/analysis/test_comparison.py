@@ -60,6 +60,16 @@ def test_values_are_those_of_the_first_evaluations_that_are_feasible():
     assert found.scores[0].front == sum(not np.any(np.less_equal(F, p).all(1) & np.less(F, p).any(1)) for p in F)
 
 
+def test_nothing_is_better_than_the_best_known():
+    """Also where a run's best in some direction is beyond the reference point."""
+    x = np.linspace(0.0, 1.0, 30)
+    tail = np.array([[-1e-3, 9.0], [9.0, -1e-3]])
+    near = Contender("near", "near-1", Told(np.column_stack([x, 1.0 - x]), np.zeros((30, 1))))
+    far = Contender("far", "far-1", Told(np.concatenate([near.told.F[:-2] + 0.1, tail]), np.zeros((30, 1))))
+    for score in compare([near, far], objectives(), REFERENCE).scores:
+        assert all(score.values[name] >= 0.0 for name in ("igd_plus", "epsilon", "mean_gap", "worst_gap"))
+
+
 def test_runs_that_are_shorter_are_left_out():
     runs = [contender("a", 1, 0.5, 80), contender("b", 2, 0.5, 40), Contender("c", "c-1", Told(*np.empty((2, 0, 2))))]
     assert [c.run for c in compare(runs, objectives(), None).left_out] == ["c-1"]

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from divideropt.analysis import INDICATORS
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.cli import main
@@ -81,6 +82,12 @@ def test_a_table_goes_to_standard_output_and_words_to_the_other(call):
         "--at N compares at another number",
         "no rank test where a strategy has one run: goal_attainment; give it more seeds",
     ]
+
+
+def test_the_page_on_it_knows_every_figure():
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "compare.md").read_text(encoding="utf-8")
+    for indicator in INDICATORS.values():
+        assert page.count(indicator.title) > 1
 
 
 def test_json_says_what_the_logs_say(call, home):

@@ -11,6 +11,7 @@ from divideropt.analysis import knee_points, nondominated
 from divideropt.models import Quantity
 from divideropt.problem import Objective
 from divideropt.report.choosing import choosing_of
+from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.data import read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.page import render_report
@@ -117,6 +118,23 @@ def test_a_candidate_is_selected_by_its_row(compared, opened):
     assert compared.choosing.candidates[-1].design.design_id in found.title()
     assert found.page.locator("#strategies table").count() == 2
     quiet(found)
+
+
+def test_each_run_is_a_point_of_each_panel(compared, opened):
+    found = opened(render_report(compared), NO_WEBGL)
+    assert found.count("#indicators .cartesianlayer > .subplot") == 6
+    assert found.count("#indicators path.point") == 6 * 5
+    assert found.count("#indicators path.js-line") == 6 * 2
+
+
+def test_what_is_infinite_is_not_drawn(compared):
+    first, *others = compared.comparison.scores
+    worse = replace(first, values={**first.values, "worst_gap": float("inf")})
+    figure = comparison_figure(replace(compared.comparison, scores=(worse, *others)))
+    drawn = [value for trace in figure.data if trace.mode == "markers" for value in trace.y]
+    assert drawn.count(None) == 1
+    text = render_report(replace(compared, comparison=replace(compared.comparison, scores=(worse, *others))))
+    assert "∞)" in text
 
 
 def test_hostile_names_stay_text(compared):

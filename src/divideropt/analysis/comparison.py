@@ -1,8 +1,8 @@
 """Strategies compared over their seeds, after equally many evaluations of each run.
 
-All indicators measure against the best known front, that of everything the compared runs have logged, as far as it is
-within the reference point; only what a run found in its first evaluations counts for the run. Objectives are scaled
-by that front's extents, and the goal directions start a little below its ideal point.
+All indicators measure against the best known front, that of everything the compared runs have logged; only what a run
+found in its first evaluations counts for the run. Objectives are scaled by the extents of that front within the
+reference point, to which IGD+ and ε keep, and the goal directions start a little below its ideal point.
 """
 
 from collections.abc import Mapping, Sequence
@@ -191,7 +191,7 @@ class _Measure:
         self._scale = Scale.of(inside)
         self._known = self._scale.apply(inside)
         self._directions = reference_directions(len(objectives), DIRECTIONS)
-        self._best = self._reached(self._known)
+        self._best = self._reached(self._scale.apply(known))
 
     def of(self, front: FloatArray) -> dict[str, float | None]:
         scaled = self._scale.apply(front)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from divideropt.analysis import Summary
+from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.display import number, rounded
@@ -84,6 +85,8 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("hypervolume", hypervolume(data)))
     if len(data.objectives) == 1:
         found.append(drawn("least", least_objective(data)))
+    if data.comparison is not None:
+        found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:
         found.append(drawn("response", step_figure(data.responses)))
     return found
