@@ -5,12 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from browsing import NO_WEBGL, quiet
-from divideropt.analysis import knee_points, nondominated
+from divideropt.analysis import Score, knee_points, nondominated
 from divideropt.models import Quantity
 from divideropt.problem import Objective
 from divideropt.report.choosing import choosing_of
+from divideropt.report.comparison import quartiles
 from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.data import read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
@@ -135,6 +138,20 @@ def test_what_is_infinite_is_not_drawn(compared):
     assert drawn.count(None) == 1
     text = render_report(replace(compared, comparison=replace(compared.comparison, scores=(worse, *others))))
     assert "∞)" in text
+
+
+@given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=9), st.integers(0, 4))
+def test_quartiles_are_numpys_and_know_the_infinite(values, infinite):
+    values = values + [np.inf] * infinite
+    scores = [Score("g", "g-1", 1, 1, {"epsilon": value}) for value in values]
+    found = quartiles("epsilon", scores)
+    if not infinite:
+        assert found == pytest.approx(np.percentile(values, [25, 50, 75]), abs=1e-9)
+    ranked = sorted(values)
+    for share, value in zip((0.25, 0.5, 0.75), found, strict=True):
+        place = share * (len(values) - 1)
+        assert np.isinf(value) == np.isinf(ranked[int(np.ceil(place))])
+    assert quartiles("epsilon", []) is None
 
 
 def test_hostile_names_stay_text(compared):

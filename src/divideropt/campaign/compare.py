@@ -188,8 +188,11 @@ def _words(comparison: Comparison, contenders: Sequence[Contender], asked: int |
     else:
         yield f"compared after the first {at} evaluations of each run"
     if comparison.left_out:
-        runs = ", ".join(f"{_named(c)} ({c.evaluations})" for c in comparison.left_out)
-        yield f"left out, having fewer evaluations: {runs}"
+        most: dict[str, list[int]] = {}
+        for contender in comparison.left_out:
+            most.setdefault(contender.group, []).append(contender.evaluations)
+        runs = ", ".join(f"{len(counts)} of {name} (at most {max(counts)})" for name, counts in most.items())
+        yield f"runs left out, having fewer evaluations: {runs}"
     sizes = {name: len(scores) for name, scores in comparison.groups.items()}
     if len(sizes) == 1:
         yield "one strategy only, so there is nothing to test; name another store too, or add a strategy"

@@ -1,6 +1,7 @@
 """Strategies compared, and designs to choose, as text, as JSON and as a table."""
 
 from collections.abc import Sequence
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from divideropt.analysis import INDICATORS, Ranking, Score, effect_size
 from divideropt.campaign.compare import Compared
 from divideropt.report.display import Axis, axis_of, number
 
-QUARTILES = (25.0, 50.0, 75.0)
-"""Percentiles of what runs reached that are shown."""
+QUARTILES = (0.25, 0.5, 0.75)
+"""Quantiles of what runs reached that are shown."""
 
 
 def comparison_text(compared: Compared) -> str:
@@ -80,10 +81,10 @@ def comparison_data(compared: Compared) -> dict[str, Any]:
 
 def quartiles(name: str, scores: Sequence[Score]) -> tuple[float, float, float] | None:
     """Return lower quartile, median and upper quartile of an indicator over runs; None where it is not defined."""
-    values = [value for score in scores if (value := score.values[name]) is not None]
+    values = sorted(value for score in scores if (value := score.values[name]) is not None)
     if not values:
         return None
-    lower, median, upper = np.percentile(values, QUARTILES, method="inverted_cdf").tolist()
+    lower, median, upper = (_quantile(values, share) for share in QUARTILES)
     return lower, median, upper
 
 
@@ -99,6 +100,13 @@ def quartile_text(name: str, scores: Sequence[Score]) -> str:
 def p_text(p: float | None) -> str:
     """Write a p-value with two digits, as nobody reads more."""
     return "–" if p is None else number(p, 2)
+
+
+def _quantile(values: Sequence[float], share: float) -> float:
+    """Interpolate between two of sorted values; numpy makes NaN of two infinite ones."""
+    place = share * (len(values) - 1)
+    below, above = values[int(place)], values[ceil(place)]
+    return below if below == above else below + (above - below) * (place % 1)
 
 
 def _strategies(compared: Compared) -> str:
