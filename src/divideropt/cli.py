@@ -168,6 +168,27 @@ def report(store: Path, out: Path | None) -> None:
 
 
 @commands.command()
+@click.argument("stores", type=_FILE, nargs=-1, required=True, metavar="STORE...")
+@click.option("--at", "evaluations", type=click.IntRange(1), help="After so many evaluations of each run.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON on standard output.")
+@click.option("--out", type=_FILE, help="A .csv or .parquet file for the indicators of each run.")
+def compare(stores: tuple[Path, ...], evaluations: int | None, as_json: bool, out: Path | None) -> None:
+    """Compare strategies over their seeds, in one store or several of one problem; then help to choose a design."""
+    _check_out(out, (".csv", ".parquet"))
+    import json
+
+    from divideropt.campaign.compare import compare_stores
+    from divideropt.report import comparison_data, comparison_table, comparison_text
+
+    found = compare_stores(stores, evaluations)
+    if out is not None:
+        _write_table(comparison_table(found), out)
+    _write_data(json.dumps(comparison_data(found), indent=2) + "\n" if as_json else comparison_text(found))
+    for sentence in found.words:
+        _say(sentence)
+
+
+@commands.command()
 @click.argument("designs", type=_FILE)
 @click.option("--campaign", type=_FILE, help="Whose model, scenario and parameters; divider.yaml's where not given.")
 @click.option("--out", type=_FILE, help="A .csv or .parquet file; CSV to standard output where not given.")

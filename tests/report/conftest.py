@@ -44,6 +44,9 @@ parallel: {backend: sequential}
 """
 
 
+ONE = "strategies: {nsga2: {population: 8, generations: 3, seeds: [1, 2]}}"
+
+
 class Spheres:
     """Squared distances to corners of the unit cube; the front of two is the segment between them."""
 
@@ -89,9 +92,9 @@ def data(store: Store) -> ReportData:
 
 @pytest.fixture
 def spheres(tmp_path: Path) -> Callable[..., Store]:
-    """`spheres(objectives, more)`: a finished campaign of the analytic model."""
+    """`spheres(objectives, more, goal, strategies)`: a finished campaign of the analytic model."""
 
-    def make(objectives: int, more: str = "", goal: str = "{}") -> Store:
+    def make(objectives: int, more: str = "", goal: str = "{}", strategies: str = ONE) -> Store:
         names = [f"q{i}" for i in range(objectives)]
         text = f"""
 name: spheres
@@ -99,7 +102,7 @@ model: {{kind: "report_spheres:Spheres", options: {{objectives: {objectives}}}}}
 variables: {{p0: [0, 1], p1: [0, 1], p2: [0, 0.5]}}
 objectives: {{{", ".join(f"{name}: {goal}" for name in names)}}}
 reference_point: {{{", ".join(f"{name}: 3" for name in names)}}}
-strategies: {{nsga2: {{population: 8, generations: 3, seeds: [1, 2]}}}}
+{strategies}
 parallel: {{backend: sequential}}
 {more}
 """

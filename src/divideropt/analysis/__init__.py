@@ -1,35 +1,82 @@
-"""What can be said of a store's evaluations: fronts, indicators."""
+"""What can be said of a store's evaluations: fronts, indicators, tests between strategies, choices."""
 
+from divideropt.analysis.attainment import attainment_surface, median_surface, worst_surface
+from divideropt.analysis.choice import Choice, choose
+from divideropt.analysis.comparison import INDICATORS, Comparison, Contender, Indicator, Ranking, Score, compare
+from divideropt.analysis.decision import Goals, achievement, bulge, knee_points, meeting_goals, pseudo_weights
 from divideropt.analysis.differences import neighbours
 from divideropt.analysis.fronts import combined_front, nondominated
-from divideropt.analysis.indicators import best_attainment, hypervolume, hypervolume_history
+from divideropt.analysis.goal_directions import gaps, reached
+from divideropt.analysis.indicators import (
+    additive_epsilon,
+    best_attainment,
+    hypervolume,
+    hypervolume_contributions,
+    hypervolume_history,
+    igd_plus,
+    multiplicative_epsilon,
+)
 from divideropt.analysis.optimality import Optimality, optimality
+from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
+from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
+    "INDICATORS",
+    "Choice",
+    "Comparison",
+    "Contender",
     "Convergence",
+    "Goals",
+    "Indicator",
     "Kkt",
     "Optimality",
+    "PairTest",
+    "Ranking",
+    "Scale",
+    "Score",
     "Summary",
     "Tally",
     "Verified",
+    "achievement",
+    "additive_epsilon",
+    "attainment_surface",
     "best_attainment",
+    "bulge",
+    "choose",
     "combined_front",
+    "compare",
     "converged",
     "convergence",
+    "effect_size",
+    "gaps",
+    "holm",
     "hypervolume",
+    "hypervolume_contributions",
     "hypervolume_history",
+    "igd_plus",
+    "knee_points",
     "marked",
     "measured",
+    "median_surface",
+    "meeting_goals",
+    "multiplicative_epsilon",
     "neighbours",
     "nondominated",
     "optimality",
+    "pair_tests",
+    "probability_above",
+    "pseudo_weights",
+    "reached",
+    "region",
     "repeatable",
     "residuals",
     "scales_of",
+    "several_test",
     "summarise",
     "tally",
+    "worst_surface",
     "worth_verifying",
 ]

@@ -7,7 +7,7 @@ What touches no evaluation, `verification`, `optimality` and `parallel`, may be 
 `model.deadline`, which counts for designs that are not yet logged.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from divideropt.campaign.config import Campaign
@@ -22,7 +22,10 @@ from divideropt.store import Store, TableSchema
 BUDGETS = ("generations", "evaluations")
 """Options that may grow."""
 
-_FIXED = ("name", "model", "variables", "objectives", "constraints", "reference_point")
+PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point")
+"""Sections that say what is optimised, and how well a front is."""
+
+_SIDES = ("the store", "the campaign")
 
 
 def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
@@ -68,14 +71,29 @@ def check_endings(asked: Campaign, problem: Problem, store: Store) -> None:
             ended = watch.hear(problem.tell(batch))
 
 
-def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
-    before, after = _as_written(stored), _as_written(asked)
-    for section in _FIXED:
-        yield from _compare(section, before[section], after[section])
+def differences(
+    first: Campaign, second: Campaign, sections: Sequence[str] = PROBLEM, sides: tuple[str, str] = _SIDES
+) -> Iterator[str]:
+    """Say in which keys two campaigns differ, a sentence each.
+
+    Args:
+        first: A campaign.
+        second: Another.
+        sections: Where to look.
+        sides: What the sentences call them.
+    """
+    before, after = _as_written(first), _as_written(second)
+    for section in sections:
+        yield from _compare(section, before[section], after[section], sides)
     for section in ("variables", "objectives", "constraints"):
         old, new = list(before[section]), list(after[section])
         if old != new and sorted(old) == sorted(new):
-            yield f"{section}: in the order {', '.join(old)} in the store, {', '.join(new)} in the campaign"
+            yield f"{section}: in the order {', '.join(old)} in {sides[0]}, {', '.join(new)} in {sides[1]}"
+
+
+def _differences(stored: Campaign, asked: Campaign) -> Iterator[str]:
+    yield from differences(stored, asked, ("name", *PROBLEM))
+    before, after = _as_written(stored), _as_written(asked)
     for name, plan in before["strategies"].items():
         if name in after["strategies"]:
             yield from _compare_plans(f"strategies.{name}", plan, after["strategies"][name])
@@ -90,12 +108,12 @@ def _as_written(campaign: Campaign) -> Any:
     return data
 
 
-def _compare(path: str, before: Any, after: Any) -> Iterator[str]:
+def _compare(path: str, before: Any, after: Any, sides: tuple[str, str] = _SIDES) -> Iterator[str]:
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         for key in dict.fromkeys([*before, *after]):
-            yield from _compare(f"{path}.{key}", before.get(key), after.get(key))
+            yield from _compare(f"{path}.{key}", before.get(key), after.get(key), sides)
     elif before != after:
-        yield f"{path}: {before} in the store, {after} in the campaign"
+        yield f"{path}: {before} in {sides[0]}, {after} in {sides[1]}"
 
 
 def _compare_plans(path: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:

@@ -1,6 +1,16 @@
 """The report: a store to one HTML file to look at, which asks nothing of any server."""
 
+from divideropt.report.comparison import comparison_data, comparison_table, comparison_text
 from divideropt.report.page import write_report
 from divideropt.report.response_page import Curve, ResponseCurves, response_page, write_response
 
-__all__ = ["Curve", "ResponseCurves", "response_page", "write_report", "write_response"]
+__all__ = [
+    "Curve",
+    "ResponseCurves",
+    "comparison_data",
+    "comparison_table",
+    "comparison_text",
+    "response_page",
+    "write_report",
+    "write_response",
+]

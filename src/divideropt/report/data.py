@@ -8,7 +8,18 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 import pyarrow as pa
 
-from divideropt.analysis import Convergence, Summary, Verified, combined_front, convergence, marked, summarise
+from divideropt.analysis import (
+    Comparison,
+    Contender,
+    Convergence,
+    Summary,
+    Verified,
+    combined_front,
+    compare,
+    convergence,
+    marked,
+    summarise,
+)
 from divideropt.analysis.summary import Best
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
@@ -18,6 +29,7 @@ from divideropt.campaign.plan import build_problem, plan_runs, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
+from divideropt.report.choosing import Choosing, choosing_of
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
@@ -77,6 +89,8 @@ class ReportData:
         tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
         best: The best of each strategy by goal attainment; empty where there are no goals.
+        comparison: The strategies compared; None where there is one only, or nothing feasible.
+        choosing: Designs of the front that are worth a look; None without a front.
         leanings: The bounds that the front leans on.
         responses: The step responses; None for a model that has none.
         notes: Sentences on the state of the store.
@@ -95,6 +109,8 @@ class ReportData:
     tolerance: float
     drawn: tuple[int, ...]
     best: tuple[Design, ...]
+    comparison: Comparison | None
+    choosing: Choosing | None
     leanings: tuple[Leaning, ...]
     responses: Responses | None
     notes: tuple[str, ...]
@@ -165,6 +181,8 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         campaign.verification.tolerance,
         _drawn(front),
         best,
+        _comparison(facts, logs, problem, reference),
+        choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
         _progress(facts, store) + notes,
@@ -208,6 +226,16 @@ def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
     failures = {run.name: Mishaps(store.status_folder, run.name).failure for run in runs}
     notes += [f"Incomplete, given up: {name}: {reason}." for name, reason in failures.items() if reason]
     return tuple(notes)
+
+
+def _comparison(
+    facts: Sequence[RunFacts], logs: Mapping[str, Summary], problem: Problem, reference: FloatArray | None
+) -> Comparison | None:
+    """Compare the strategies after as many evaluations as every run has."""
+    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts]
+    if len({c.group for c in contenders if c.evaluations}) < 2:
+        return None
+    return compare(contenders, problem.objectives, reference)
 
 
 def _best(facts: Sequence[RunFacts], logs: Mapping[str, Summary], read: Reader) -> tuple[Design, ...]:

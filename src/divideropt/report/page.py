@@ -5,7 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from divideropt.analysis import Summary
+from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
+from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.display import number, rounded
 from divideropt.report.document import drawn, render, save
 from divideropt.report.figures import (
@@ -64,7 +66,11 @@ def render_report(data: ReportData) -> str:
             "front": front_table(data, MOST_ROWS),
             "runs": runs_table(data),
             "outcomes": outcome_table(data),
+            "choosing": choosing_table(data),
+            "strategies": strategies_table(data),
+            "tests": rank_table(data),
         },
+        lacking=lacking(data),
         number=number,
         verified_words=lambda design: verified_words(design, data),
         most_rows=MOST_ROWS,
@@ -82,6 +88,8 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("residuals", residuals(data)))
     if len(data.objectives) == 1:
         found.append(drawn("least", least_objective(data)))
+    if data.comparison is not None:
+        found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:
         found.append(drawn("response", step_figure(data.responses)))
     return found
@@ -102,6 +110,7 @@ def _selection(data: ReportData) -> dict[str, Any]:
     """What the page needs to show a design that is selected."""
     responses = data.responses
     shown = [data.front[i] for i in data.drawn] + list(data.best)
+    shown += [candidate.design for candidate in data.choosing.candidates] if data.choosing else []
     return {
         "fields": [_field(facts.axis.label, None) for facts in data.variables]
         + [
