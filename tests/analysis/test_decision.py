@@ -16,7 +16,7 @@ from divideropt.analysis import (
     pseudo_weights,
 )
 from divideropt.analysis.decision import AUGMENTATION, KNEE_RADIUS, LEAST_BULGE
-from divideropt.strategies.goal_attainment import reference_directions
+from divideropt.strategies import reference_directions
 
 POINTS = st.integers(1, 4).flatmap(
     lambda k: arrays(float, st.tuples(st.integers(1, 12), st.just(k)), elements=st.integers(0, 8).map(float))

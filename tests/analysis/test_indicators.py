@@ -16,7 +16,7 @@ from divideropt.analysis import (
     nondominated,
     reached,
 )
-from divideropt.strategies.goal_attainment import reference_directions
+from divideropt.strategies import reference_directions
 
 
 def sets(least=1):

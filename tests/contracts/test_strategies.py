@@ -10,7 +10,7 @@ from divideropt.campaign.load import default_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter
 from divideropt.problem import DesignSpace, Told, Variable
-from divideropt.strategies import NSGA2, NSGA3, SMSEMOA, STRATEGIES, ComplexMethod, Genetic, GoalAttainment
+from divideropt.strategies import NSGA2, NSGA3, SMSEMOA, STRATEGIES, ComplexMethod, Genetic, GoalAttainment, Memetic
 from divideropt.strategies.complex_moves import VARIANTS
 from toy_model import toy_problem
 from unseeded import seeded_only
@@ -31,6 +31,7 @@ SMALL = {
         )
         for variant in VARIANTS
     },
+    "memetic": (Memetic(population=12, evaluations=200), Memetic(population=12, evaluations=400)),
     "goal_attainment": (
         GoalAttainment(directions=7, evaluations=120),
         GoalAttainment(directions=7, evaluations=200),

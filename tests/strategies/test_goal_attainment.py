@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from divideropt.problem import Told, merit
-from divideropt.strategies import goal_attainment
-from divideropt.strategies.goal_attainment import SMALLEST_WEIGHT, GoalAttainment, reference_directions
+from divideropt.strategies import GoalAttainment, goal_attainment, reference_directions
+from divideropt.strategies.directions import SMALLEST_WEIGHT
 from toy_model import toy_problem
 
 

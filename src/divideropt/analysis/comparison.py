@@ -19,7 +19,7 @@ from divideropt.analysis.ranking import PairTest, holm, pair_tests, several_test
 from divideropt.analysis.scale import Scale, region
 from divideropt.models.base import FloatArray
 from divideropt.problem import AGGREGATES, Objective, Told
-from divideropt.strategies.goal_attainment import reference_directions
+from divideropt.strategies import reference_directions
 
 DIRECTIONS = 91
 """Goal directions, at most: the largest Das-Dennis set, which for three objectives is just as many."""

@@ -5,8 +5,10 @@ from types import MappingProxyType
 
 from divideropt.strategies.base import Evaluate, Strategy
 from divideropt.strategies.complex_method import ComplexMethod
+from divideropt.strategies.directions import reference_directions
 from divideropt.strategies.genetic import Genetic
 from divideropt.strategies.goal_attainment import GoalAttainment
+from divideropt.strategies.memetic import Memetic
 from divideropt.strategies.nsga2 import NSGA2
 from divideropt.strategies.nsga3 import NSGA3
 from divideropt.strategies.sms_emoa import SMSEMOA
@@ -19,6 +21,7 @@ STRATEGIES: Mapping[str, type[Strategy]] = MappingProxyType(
         "genetic": Genetic,
         "complex": ComplexMethod,
         "goal_attainment": GoalAttainment,
+        "memetic": Memetic,
     }
 )
 
@@ -31,5 +34,7 @@ __all__ = [
     "Evaluate",
     "Genetic",
     "GoalAttainment",
+    "Memetic",
     "Strategy",
+    "reference_directions",
 ]
