@@ -3,6 +3,7 @@ import pytest
 
 from divideropt.problem import Told, merit
 from divideropt.strategies import GoalAttainment, goal_attainment, reference_directions
+from divideropt.strategies.archive import Archive
 from divideropt.strategies.directions import SMALLEST_WEIGHT
 from toy_model import toy_problem
 
@@ -42,7 +43,7 @@ def test_the_sweep_solves_the_problem_of_each_direction():
             assert best * direction.min() < 0.02
 
 
-class Everything(goal_attainment._Archive):
+class Everything(Archive):
     """Keeps all it was told, as the method is defined."""
 
     def settle(self):
@@ -79,5 +80,5 @@ def test_what_the_sweep_forgets_would_have_changed_no_bit(seed, limit, monkeypat
         return batches
 
     few = asked()
-    monkeypatch.setattr(goal_attainment, "_Archive", Everything)
+    monkeypatch.setattr(goal_attainment, "Archive", Everything)
     assert few == asked()

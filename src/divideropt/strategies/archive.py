@@ -44,22 +44,14 @@ class Archive:
         """Begin with nothing."""
         self._evaluate = evaluate
         self._fresh: list[tuple[FloatArray, Told]] = []
-        self._X = np.empty((0, len(problem.space)))
-        self._F = np.empty((0, len(problem.objectives)))
+        self.X = np.empty((0, len(problem.space)))
+        """Designs of the front, shape (n, d)."""
+        self.F = np.empty((0, len(problem.objectives)))
+        """Their objectives, shape (n, k)."""
         self._least: tuple[FloatArray, float] | None = None
         """The design of least violation and its merit; None once something is feasible."""
         self.feasible = False
         """Whether a feasible design is known."""
-
-    @property
-    def X(self) -> FloatArray:
-        """Designs of the front, shape (n, d)."""
-        return self._X
-
-    @property
-    def F(self) -> FloatArray:
-        """Their objectives, shape (n, k)."""
-        return self._F
 
     def score(self, designs: FloatArray) -> Told:
         """Evaluate designs; they are kept with the next `settle`."""
@@ -77,10 +69,10 @@ class Archive:
         feasible = told.feasible
         if feasible.any():
             if not self.feasible:
-                self.feasible, self._X, self._F = True, self._X[:0], self._F[:0]
-            self._X, self._F = _joined((self._X, self._F), (X[feasible], told.F[feasible]))
+                self.feasible, self.X, self.F = True, self.X[:0], self.F[:0]
+            self.X, self.F = _joined((self.X, self.F), (X[feasible], told.F[feasible]))
         elif not self.feasible:
-            self._X, self._F = _joined((self._X, self._F), (X, told.F))
+            self.X, self.F = _joined((self.X, self.F), (X, told.F))
             merits = merit(np.zeros(len(X)), told)
             row = int(merits.argmin())
             if self._least is None or merits[row] < self._least[1]:
@@ -88,15 +80,15 @@ class Archive:
 
     def ideal_and_span(self) -> tuple[FloatArray, FloatArray]:
         """Ideal point of the front found so far, and its extent to the nadir, 1 where it has none."""
-        ideal = self._F.min(axis=0)
-        span = self._F.max(axis=0) - ideal
+        ideal = self.F.min(axis=0)
+        span = self.F.max(axis=0) - ideal
         return ideal, np.where(span > 0, span, 1.0)
 
     def scale(self) -> Scale:
         """The front's scale: its median above the ideal point is the unit, since a nadir hangs on a few outliers."""
-        ideal = self._F.min(axis=0)
-        unit = np.median(self._F, axis=0) - ideal
-        extent = self._F.max(axis=0) - ideal
+        ideal = self.F.min(axis=0)
+        unit = np.median(self.F, axis=0) - ideal
+        extent = self.F.max(axis=0) - ideal
         unit = np.where(unit > 0.0, unit, np.where(extent > 0.0, extent, 1.0))
         return Scale(ideal - UTOPIA_MARGIN * unit, unit)
 
@@ -104,9 +96,9 @@ class Archive:
         """Return the design of least value, shape (d,), and its merit, by a value of objectives, (n, k) to (n,)."""
         if not self.feasible and self._least is not None:
             return self._least
-        values = np.minimum(value(self._F), INFEASIBLE_MERIT)
+        values = np.minimum(value(self.F), INFEASIBLE_MERIT)
         row = int(values.argmin())
-        return self._X[row], float(values[row])
+        return self.X[row], float(values[row])
 
 
 def reached(archive: Archive, scale: Scale, directions: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ best design of a direction is the same.
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +97,8 @@ class LocalModel:
         def slack_slopes(v: FloatArray) -> FloatArray:
             return np.concatenate([-(slopes + curvatures @ v[:-1]), bounded[:, None]], axis=1)
 
+        constraint: Any = {"type": "ineq", "fun": slack, "jac": slack_slopes}
+        options: Any = {"maxiter": STEP_ITERATIONS, "ftol": STEP_PRECISION}
         gradient = np.zeros(len(lower) + 1)
         gradient[-1] = 1.0
         found = minimize(
@@ -104,8 +107,8 @@ class LocalModel:
             jac=lambda v: gradient,
             method="SLSQP",
             bounds=Bounds(np.append(lower, -np.inf), np.append(upper, np.inf)),
-            constraints=[{"type": "ineq", "fun": slack, "jac": slack_slopes}],
-            options={"maxiter": STEP_ITERATIONS, "ftol": STEP_PRECISION},
+            constraints=constraint,
+            options=options,
         )
         s = np.clip(np.nan_to_num(found.x[:-1]), lower, upper)
         return np.clip(self.centre + self.radius * s, 0.0, 1.0), begin - float(found.x[-1])
