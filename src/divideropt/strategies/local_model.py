@@ -33,6 +33,9 @@ STEP_ITERATIONS = 12
 STEP_PRECISION = 1e-5
 """Gain in the logarithm of λ at which SLSQP stops."""
 
+_MINIMIZE: Any = minimize
+"""SciPy's stubs have no words for arrays of one length that they do not know."""
+
 
 @dataclass(frozen=True)
 class LocalModel:
@@ -97,18 +100,16 @@ class LocalModel:
         def slack_slopes(v: FloatArray) -> FloatArray:
             return np.concatenate([-(slopes + curvatures @ v[:-1]), bounded[:, None]], axis=1)
 
-        constraint: Any = {"type": "ineq", "fun": slack, "jac": slack_slopes}
-        options: Any = {"maxiter": STEP_ITERATIONS, "ftol": STEP_PRECISION}
         gradient = np.zeros(len(lower) + 1)
         gradient[-1] = 1.0
-        found = minimize(
+        found = _MINIMIZE(
             lambda v: v[-1],
             np.append(np.zeros(len(lower)), begin),
-            jac=lambda v: gradient,
+            jac=lambda _: gradient,
             method="SLSQP",
             bounds=Bounds(np.append(lower, -np.inf), np.append(upper, np.inf)),
-            constraints=constraint,
-            options=options,
+            constraints={"type": "ineq", "fun": slack, "jac": slack_slopes},
+            options={"maxiter": STEP_ITERATIONS, "ftol": STEP_PRECISION},
         )
         s = np.clip(np.nan_to_num(found.x[:-1]), lower, upper)
         return np.clip(self.centre + self.radius * s, 0.0, 1.0), begin - float(found.x[-1])
