@@ -91,6 +91,7 @@ def test_a_scale_begins_below_the_ideal_point_and_has_the_median_for_its_unit():
     scale = archive.scale()
     assert scale.unit.tolist() == [4, 30]  # the outlier at 1000 counts as one design
     assert np.allclose(scale.utopia, [1 - UTOPIA_MARGIN * 4, 10 - UTOPIA_MARGIN * 30])
+    assert (scale.utopia < archive.F.min(axis=0)).all()
     scaled = scale.of(archive.F)
     assert np.allclose(scaled.min(axis=0), UTOPIA_MARGIN)
     assert np.allclose(np.median(scaled, axis=0), 1.0 + UTOPIA_MARGIN)
