@@ -1,8 +1,8 @@
 """Gembicki's goal-attainment problem (1974), solved by SciPy on differences of the simulations.
 
 Minimise γ + ρ Σ z_i/w_i over u and γ, subject to z_i(u) - w_i γ ≤ 0, the problem's constraints and the box, z being
-the objectives scaled between a utopian and a middle point. The small ρ is Wierzbicki's augmentation: of two designs with
-the same γ the one that is better in the other objectives wins, so that no answer is only weakly optimal.
+the objectives scaled between a utopian and a middle point. The small ρ is Wierzbicki's augmentation: of two designs
+with the same γ the one that is better in the other objectives wins, so that no answer is only weakly optimal.
 """
 
 import warnings

@@ -3,7 +3,8 @@
 Each direction w asks for the least γ with F_i - w_i γ ≤ F*_i (Gembicki 1974), objectives scaled by what has been
 found so far: from the ideal to the nadir point where the complex method solves it, from a utopian to a middle point
 where SciPy's methods do (`gembicki.py`). Every visit begins at the best known for its direction, most often a
-neighbour's answer. A small multiple of the sum is added, so that weakly optimal points lose (Wierzbicki's augmentation).
+neighbour's answer. A small multiple of the sum is added, so that weakly optimal points lose (Wierzbicki's
+augmentation).
 """
 
 from contextlib import suppress

@@ -57,7 +57,10 @@ class Memetic:
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
         """There must be something to trade, and a budget for the first generation; see `Strategy.objection`."""
         if objectives < 2:
-            return "population", "one objective has no front; delete memetic and take complex, or give another objective"
+            return (
+                "population",
+                "one objective has no front to cover; take complex, or give another objective",
+            )
         if self.evaluations < self.population:
             return "evaluations", f"{self.evaluations} are fewer than the population of {self.population}; give more"
         return None
