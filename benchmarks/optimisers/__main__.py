@@ -71,6 +71,7 @@ def _contest(args: argparse.Namespace) -> Contest:
         seeds=tuple(seeds[: args.seeds]),
         known_seeds=tuple(seeds[: args.known_seeds]),
         workers=args.workers,
+        timed=not args.untimed,
     )
 
 
@@ -100,6 +101,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--first-seed", type=int, default=FRESH, help=f"default: {FRESH}")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES, metavar="NAME", help=", ".join(NAMES))
     parser.add_argument("--workers", type=int, default=2, help="runs at a time (default: 2)")
+    parser.add_argument("--untimed", action="store_true", help="compare at equal evaluations alone: a tenth of the time")
     parser.add_argument("--tables", action="store_true", help="make no runs, the tables from those that are there")
     parser.add_argument("--no-picture", action="store_true", help="do without Chromium")
     parser.add_argument(

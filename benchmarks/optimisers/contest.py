@@ -43,6 +43,7 @@ class Contest:
         marks: Evaluations at which players are compared, rising.
         plain_evaluations: Of the plain strategy, on the valve: what all are measured by there.
         workers: Runs at a time.
+        timed: Whether the others get as much time as the champion takes, too, and not only as many evaluations.
     """
 
     folder: Path
@@ -52,6 +53,7 @@ class Contest:
     marks: tuple[int, ...] = MARKS
     plain_evaluations: int = PLAIN_EVALUATIONS
     workers: int = 2
+    timed: bool = True
 
     @cached_property
     def players(self) -> dict[str, Player]:
@@ -76,7 +78,7 @@ class Contest:
         """Make all runs that are missing; returns how many were made."""
         first = [self._run(case, self.champion, seed) for case in self.cases for seed in self.seeds_of(case)]
         made = make(first, self.folder, self.workers)
-        times = {case: self.equal_time(case) for case in self.cases}
+        times = {case: self.equal_time(case) if self.timed else 0.0 for case in self.cases}
         everything = [
             self._run(case, player, seed, times[case])
             for case in self.cases
@@ -144,7 +146,7 @@ class Contest:
         return counts.astype(np.float64), seconds, curves
 
     def _time_for(self, run: Run) -> float:
-        return self.equal_time(run.case) if self.players[run.player].most is None else np.inf
+        return self.equal_time(run.case) if self.timed and self.players[run.player].most is None else np.inf
 
     def _run(self, case: str, player: str, seed: int, seconds: float = 0.0) -> Run:
         plain = case == VALVE and player == PLAIN

@@ -31,6 +31,13 @@ SMALL = {
         )
         for variant in VARIANTS
     },
+    **{
+        f"goal_attainment {solver}": (
+            GoalAttainment(directions=7, evaluations=120, solver=solver),
+            GoalAttainment(directions=7, evaluations=200, solver=solver),
+        )
+        for solver in ("slsqp", "trust-constr")
+    },
     "memetic": (Memetic(population=12, evaluations=200), Memetic(population=12, evaluations=400)),
     "goal_attainment": (
         GoalAttainment(directions=7, evaluations=120),

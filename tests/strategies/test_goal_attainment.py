@@ -8,20 +8,6 @@ from divideropt.strategies.directions import SMALLEST_WEIGHT
 from toy_model import toy_problem
 
 
-def test_the_directions_are_the_das_dennis_lattice_on_a_path_of_neighbours():
-    directions = reference_directions(3, 91)
-    assert directions.shape == (91, 3)
-    assert np.isclose(np.where(directions <= SMALLEST_WEIGHT, 0.0, directions).sum(axis=1), 1.0).all()
-    assert len(np.unique(directions.round(9), axis=0)) == 91
-    assert np.abs(np.diff(directions, axis=0)).max() <= 2 / 12 + SMALLEST_WEIGHT
-
-
-def test_fewer_directions_than_a_lattice_has_give_the_next_smaller_lattice():
-    assert len(reference_directions(3, 90)) == 78
-    assert len(reference_directions(2, 20)) == 20
-    assert len(reference_directions(1, 20)) == 1
-
-
 def test_the_sweep_solves_the_problem_of_each_direction():
     problem, told = toy_problem(), []
 

@@ -1,26 +1,30 @@
 """A sweep of goal-attainment problems over reference directions.
 
-Each direction w asks for the least γ with F_i - w_i γ ≤ F*_i, objectives scaled between the ideal and the nadir
-point of what has been found so far (Gembicki 1974); the complex method solves it, warm-started from its neighbour.
-A small multiple of the sum is added, so that weakly optimal points lose (Wierzbicki's augmentation).
+Each direction w asks for the least γ with F_i - w_i γ ≤ F*_i (Gembicki 1974), objectives scaled by what has been
+found so far: from the ideal to the nadir point where the complex method solves it, from a utopian to a middle point
+where SciPy's methods do (`gembicki.py`). Every visit begins at the best known for its direction, most often a
+neighbour's answer. A small multiple of the sum is added, so that weakly optimal points lose (Wierzbicki's augmentation).
 """
 
+from contextlib import suppress
+from functools import partial
 from itertools import count
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from divideropt.models.base import FloatArray
-from divideropt.problem import Problem, merit
+from divideropt.problem import Problem, Told, merit
 from divideropt.strategies.archive import Archive
 from divideropt.strategies.base import STRICT, BudgetSpentError, Count, Evaluate, within_budget
 from divideropt.strategies.complex_method import Complex, search
 from divideropt.strategies.directions import reference_directions
+from divideropt.strategies.gembicki import Goal, Solver, attain
 
 AUGMENTATION = 1e-3
-"""ρ: what the sum of the scaled objectives counts beside their maximum."""
+"""Default of ρ: enough to tell weakly optimal designs apart, too little to move an answer by more than 1 %."""
 
 FIRST_SAMPLE = 10
 """Random designs a variable, from which the sweep sets out."""
@@ -34,6 +38,10 @@ NEIGHBOURHOOD = (0.02, 0.3)
 warm-started complex are taken: large ones find, small ones polish."""
 
 
+VISIT_BY_SLOPES = 20
+"""The same for SciPy's methods, which need some ten slopes; they mostly end by themselves before."""
+
+
 @dataclass(frozen=True, config=STRICT)
 class GoalAttainment:
     """Options of the sweep."""
@@ -42,6 +50,10 @@ class GoalAttainment:
     """Reference directions, spread evenly (Das and Dennis); the largest such set of at most this many."""
     evaluations: Count = 9000
     """Budget of evaluations."""
+    solver: Literal["complex", "slsqp", "trust-constr"] = "complex"
+    """What solves a direction's problem: the complex method, or SciPy's methods with differences for slopes."""
+    augmentation: Annotated[float, Field(ge=0.0, le=1.0)] = AUGMENTATION
+    """ρ: what the sum of the scaled objectives counts beside their maximum."""
 
     @property
     def budget(self) -> int:
@@ -59,45 +71,77 @@ class GoalAttainment:
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Visit the directions one after the other, round after round; see `Strategy.run`."""
-        random = np.random.default_rng(seed)
-        archive = Archive(problem, within_budget(evaluate, self.evaluations))
-        directions = reference_directions(len(problem.objectives), self.directions)
+        sweep = _Sweep(problem, Archive(problem, within_budget(evaluate, self.evaluations)), seed, self.augmentation)
+        visit = sweep.by_complex if self.solver == "complex" else partial(sweep.by_slopes, solver=self.solver)
+        objectives = len(problem.objectives)
+        most = self.directions if self.solver == "complex" else objectives
         try:
-            archive.score(problem.space.sample(FIRST_SAMPLE * len(problem.space), random))
+            sweep.sample(FIRST_SAMPLE * len(problem.space))
             for _ in count():
-                for direction in directions:
-                    _visit(direction, archive, problem, random)
+                for direction in reference_directions(objectives, most):
+                    visit(direction)
+                if self.solver != "complex" and most < self.directions:
+                    most = min(most * 2 ** (objectives - 1), self.directions)
         except BudgetSpentError:
             return
 
 
-def _visit(direction: FloatArray, archive: Archive, problem: Problem, random: np.random.Generator) -> None:
-    """Improve the answer to one direction's problem by a complex that is given `VISIT` evaluations a variable."""
-    archive.settle()
-    ideal, span = archive.ideal_and_span()
-    spent, granted = 0, VISIT * len(problem.space)
+class _Sweep:
+    """The archive, and the visits to directions."""
 
-    def attainment(F: FloatArray) -> FloatArray:
-        scaled = (F - ideal) / span / direction
-        return np.asarray(scaled.max(axis=1) + AUGMENTATION * scaled.sum(axis=1))
+    def __init__(self, problem: Problem, archive: Archive, seed: int, augmentation: float) -> None:
+        self._space, self._archive, self._augmentation = problem.space, archive, augmentation
+        self._random = np.random.default_rng(seed)
 
-    def score(designs: FloatArray) -> FloatArray:
-        nonlocal spent
-        if spent + len(designs) > granted:
-            raise _VisitOverError
-        spent += len(designs)
-        told = archive.score(designs)
-        return merit(attainment(told.F), told)
+    def sample(self, size: int) -> None:
+        """Evaluate random designs."""
+        self._archive.score(self._space.sample(size, self._random))
 
-    space, (nearest, known) = problem.space, archive.nearest(attainment)
-    reach = np.exp(random.uniform(*np.log(NEIGHBOURHOOD))) * (space.upper - space.lower)
-    scatter = 2 * random.random((2 * len(space) - 1, len(space))) - 1
-    fresh = space.clip(nearest + reach * scatter)
-    try:
-        points = np.concatenate([nearest[None], fresh])
-        search(Complex(points, np.concatenate([[known], score(fresh)])), score, space, random)
-    except _VisitOverError:
-        return
+    def by_complex(self, direction: FloatArray) -> None:
+        """Improve the answer to one direction's problem by a complex around the best known."""
+        self._archive.settle()
+        ideal, span = self._archive.ideal_and_span()
+
+        def attainment(F: FloatArray) -> FloatArray:
+            scaled = (F - ideal) / span / direction
+            return np.asarray(scaled.max(axis=1) + self._augmentation * scaled.sum(axis=1))
+
+        grant = self._grant(VISIT)
+
+        def score(designs: FloatArray) -> FloatArray:
+            told = grant(designs)
+            return merit(attainment(told.F), told)
+
+        space, (nearest, known) = self._space, self._archive.nearest(attainment)
+        reach = np.exp(self._random.uniform(*np.log(NEIGHBOURHOOD))) * (space.upper - space.lower)
+        scatter = 2 * self._random.random((2 * len(space) - 1, len(space))) - 1
+        fresh = space.clip(nearest + reach * scatter)
+        with suppress(_VisitOverError):
+            points = np.concatenate([nearest[None], fresh])
+            search(Complex(points, np.concatenate([[known], score(fresh)])), score, space, self._random)
+
+    def by_slopes(self, direction: FloatArray, solver: Solver) -> None:
+        """Improve it from the best known along slopes; before anything is feasible, by a complex."""
+        self._archive.settle()
+        if not self._archive.feasible:
+            self.by_complex(direction)
+            return
+        goal = Goal(direction, self._archive.scale(), self._augmentation)
+        with suppress(_VisitOverError):
+            attain(self._archive.nearest(goal.of)[0], goal, self._space, self._grant(VISIT_BY_SLOPES), solver)
+
+    def _grant(self, visit: int) -> Evaluate:
+        """Evaluate up to so many designs a variable."""
+        left = visit * len(self._space)
+
+        def score(designs: FloatArray) -> Told:
+            nonlocal left
+            if len(designs) > left:
+                raise _VisitOverError
+            left -= len(designs)
+            return self._archive.score(designs)
+
+        return score
 
 
 class _VisitOverError(Exception):

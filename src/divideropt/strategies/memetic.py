@@ -55,7 +55,9 @@ class Memetic:
         return self.evaluations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:
-        """The first generation must fit into the budget; see `Strategy.objection`."""
+        """There must be something to trade, and a budget for the first generation; see `Strategy.objection`."""
+        if objectives < 2:
+            return "population", "one objective has no front; delete memetic and take complex, or give another objective"
         if self.evaluations < self.population:
             return "evaluations", f"{self.evaluations} are fewer than the population of {self.population}; give more"
         return None
