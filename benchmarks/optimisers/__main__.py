@@ -101,7 +101,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--first-seed", type=int, default=FRESH, help=f"default: {FRESH}")
     parser.add_argument("--cases", nargs="+", choices=NAMES, default=NAMES, metavar="NAME", help=", ".join(NAMES))
     parser.add_argument("--workers", type=int, default=2, help="runs at a time (default: 2)")
-    parser.add_argument("--untimed", action="store_true", help="compare at equal evaluations alone: a tenth of the time")
+    parser.add_argument(
+        "--untimed", action="store_true", help="compare at equal evaluations alone: a tenth of the time"
+    )
     parser.add_argument("--tables", action="store_true", help="make no runs, the tables from those that are there")
     parser.add_argument("--no-picture", action="store_true", help="do without Chromium")
     parser.add_argument(
