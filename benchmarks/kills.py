@@ -1,9 +1,9 @@
 """Kills campaigns at random moments and goes on with them: what is lost, and what comes out otherwise.
 
-    python benchmarks/kills.py [--kills 200] [--evaluations 3000] [--seed 1]
+    python benchmarks/kills.py [--kills 200] [--evaluations 3000] [--seed 1] [CAMPAIGN ...]
 
-Five campaigns on a model that does nothing but wait, one of each strategy and one of all four on two workers. Each is
-run once to its end. Then it is begun anew, the whole process group is killed (-9) at a random moment, and it is begun
+Campaigns on a model that does nothing but wait: one of each strategy, and `mixed` of all on two workers. Each is run
+once to its end. Then it is begun anew, the whole process group is killed (-9) at a random moment, and it is begun
 again on the same store, until it comes to its end; and so on until the kills are spent. After each kill every logged
 row is compared with that of the uninterrupted run, cell by cell, and counted against what was there before; at each
 end the fronts are compared too. Prints a line a campaign; leaves with 1 if anything was lost or differs.
@@ -40,9 +40,12 @@ parallel: {workers: 2, backend: BACKEND}
 
 ONES = {
     "nsga2": "nsga2: {population: 50, generations: GENERATIONS}",
+    "nsga3": "nsga3: {population: 50, generations: GENERATIONS, directions: 50}",
+    "sms_emoa": "sms_emoa: {population: 50, generations: GENERATIONS}",
     "genetic": "genetic: {population: 50, generations: GENERATIONS}",
     "complex": "complex: {points: 6, evaluations: EVALUATIONS}",
     "goal_attainment": "goal_attainment: {directions: 10, evaluations: EVALUATIONS}",
+    "memetic": "memetic: {population: 50, evaluations: EVALUATIONS}",
 }
 
 CAMPAIGNS = {name: (line, "sequential") for name, line in ONES.items()} | {
@@ -86,15 +89,19 @@ class Count:
 
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("--kills", type=int, default=200, help="in all, over the five campaigns")
+    options.add_argument("--kills", type=int, default=200, help="in all, over the campaigns")
     options.add_argument("--evaluations", type=int, default=3000, help="in each run")
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument(
+        "campaigns", nargs="*", metavar="CAMPAIGN", help=f"of {', '.join(CAMPAIGNS)}; all where none"
+    )
     given = options.parse_args()
     random = Random(given.seed)
-    share = np.diff(np.linspace(0, given.kills, len(CAMPAIGNS) + 1).astype(int))
+    campaigns = {name: CAMPAIGNS[name] for name in given.campaigns or CAMPAIGNS}
+    share = np.diff(np.linspace(0, given.kills, len(campaigns) + 1).astype(int))
     total = Count()
     print(f"{'campaign':16} kills  before any log  ends  rows compared  lost  cells different")
-    for (name, (strategies, backend)), kills in zip(CAMPAIGNS.items(), share, strict=True):
+    for (name, (strategies, backend)), kills in zip(campaigns.items(), share, strict=True):
         text = TEXT.replace("STRATEGIES", strategies).replace("BACKEND", backend)
         text = text.replace("GENERATIONS", str(given.evaluations // 50)).replace(
             "EVALUATIONS", str(given.evaluations)

@@ -26,7 +26,7 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.util.ref_dirs import get_reference_directions
 from scipy.optimize import minimize
 
-from divideropt.analysis import hypervolume, nondominated
+from divideropt.analysis import gaps, hypervolume, nondominated, reached
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.plan import build_problem, reference_of
 from divideropt.models.base import FloatArray
@@ -114,9 +114,9 @@ def main() -> None:
         print(f"{'method':>12} {'seeds':>5} " + " ".join(f"{head:>11}" for head in heads) + "  unseeded  same")
         for name, several in trials.items():
             volumes = [hypervolume(t.objectives, reference) for t in several]
-            gaps = [attained(t.objectives) / best - 1 for t in several]
-            row = f"{np.median(volumes):11.6f} {min(volumes):11.6f} {np.median([g.mean() for g in gaps]):11.2%} "
-            row += f"{np.median([g.max() for g in gaps]):11.2%} {np.median([t.seconds for t in several]):11.1f}"
+            above = [gaps(reached(t.objectives, DIRECTIONS, ORIGIN, EXTENT), best) for t in several]
+            row = f"{np.median(volumes):11.6f} {min(volumes):11.6f} {np.median([a.mean() for a in above]):11.2%} "
+            row += f"{np.median([a.max() for a in above]):11.2%} {np.median([t.seconds for t in several]):11.1f}"
             verdicts = contract(METHODS[name], problem) if name in METHODS else ("", "")
             print(f"{name:>12} {len(several):5d} {row}  {verdicts[0]:>8}  {verdicts[1]:>4}", flush=True)
 
@@ -137,12 +137,6 @@ def trial(method: Method, problem: Problem, seed: int) -> Trial:
     told = np.concatenate(objectives)
     front = nondominated(told)
     return Trial(np.concatenate(designs)[front], told[front], took)
-
-
-def attained(objectives: FloatArray) -> FloatArray:
-    """Return the least max_i z_i/w_i over points, for each direction."""
-    z = (objectives - ORIGIN) / EXTENT
-    return np.array([(z / w).max(axis=1).min() for w in DIRECTIONS])
 
 
 def optima(problem: Problem, designs: FloatArray, objectives: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 from unittest.mock import patch
 
 import numpy as np
-from numpy.random import bit_generator
+from numpy.random import _pickle, bit_generator
 
 KEEPERS = {"get_state", "set_state", "getstate", "setstate", "get_bit_generator", "set_bit_generator"}
 """Functions of the generators a process begins with that draw nothing."""
@@ -65,12 +65,23 @@ def seeded_only() -> Iterator[None]:
             finally:
                 seeded[0] = False
 
+    made = _pickle.__bit_generator_ctor
+
+    def copied(*arguments: Any) -> Any:
+        """A copy is made without a seed too, and then given the state of what it is copied from."""
+        seeded[0] = True
+        try:
+            return made(*arguments)
+        finally:
+            seeded[0] = False
+
     before = _states()
     with ExitStack() as stack:
         for module, names in ((np.random, legacy), (random, builtin)):
             for name in sorted(set(names) - KEEPERS):
                 stack.enter_context(patch.object(module, name, forbidden(f"{module.__name__}.{name}")))
         stack.enter_context(patch.object(bit_generator, "randbits", checked_randbits))
+        stack.enter_context(patch.object(_pickle, "__bit_generator_ctor", copied))
         stack.enter_context(patch.object(np.random, "RandomState", CheckedRandomState))
         stack.enter_context(patch.object(os, "urandom", forbidden("os.urandom")))
         stack.enter_context(patch.object(random, "_urandom", forbidden("random.SystemRandom")))

@@ -9,6 +9,7 @@ import moocore
 import numpy as np
 import pandas as pd
 
+from divideropt.analysis import gaps, reached
 from divideropt.models.base import FloatArray
 
 from .cases import VALVE, Case
@@ -65,11 +66,11 @@ def measured(case: Case, archive: Archive, seconds: float, marks: Sequence[int] 
     Yields:
         The numbers.
     """
-    reached = [(str(mark), archive.until(mark)) for mark in marks if archive.reaches(mark)]
+    found = [(str(mark), archive.until(mark)) for mark in marks if archive.reaches(mark)]
     if np.isfinite(seconds) and archive.lasts(seconds):
-        reached.append((TIME, archive.until_second(seconds)))
+        found.append((TIME, archive.until_second(seconds)))
         yield Value(COUNT, TIME, archive.evaluations_by(seconds))
-    for mark, F in reached:
+    for mark, F in found:
         points = case.normalised(F)
         points = points[moocore.is_nondominated(points)] if len(points) else points
         yield Value(HV, mark, case.hypervolume(points) / (case.volume or 1.0))
@@ -135,11 +136,7 @@ def attainment_excess(F: FloatArray) -> FloatArray:
         min over points of max_i z_i/w_i, over the direction's optimum, less 1; infinite without points. Shape (91,).
     """
     weights, optimum = directions()
-    if len(F) == 0:
-        return np.full(len(optimum), np.inf)
-    z = (F - GOAL) / GOAL_SPAN
-    reached = np.array([(z / w).max(axis=1).min() for w in weights])
-    return np.asarray(reached / optimum - 1.0)
+    return gaps(reached(F, weights, GOAL, GOAL_SPAN), optimum)
 
 
 @cache

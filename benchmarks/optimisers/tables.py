@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
 import pandas as pd
+
+from divideropt.analysis import holm, pair_tests
 
 from .cases import VALVE
 from .contest import Contest
 from .measures import COUNT, HV, HV_BEST, IGD, LAMBDA_MEAN, LAMBDA_WORST, TIME
 from .players import PLAIN
-from .rank_tests import holm, rank_sum
 
 SIGNIFICANT = 0.05
 
@@ -121,7 +121,9 @@ def players_table(contest: Contest) -> str:
 
 
 def compared(contest: Contest, of: pd.DataFrame) -> pd.DataFrame:
-    """Test the champion against each other player, by case, measure and mark; p corrected for all of these tests.
+    """Test the champion against each other player, by case, measure and mark, where both have two runs at least.
+
+    p is corrected for all of these tests.
 
     Returns:
         Columns case, player, measure, mark, p, a12: the chance that the champion's run is the better.
@@ -131,12 +133,12 @@ def compared(contest: Contest, of: pd.DataFrame) -> pd.DataFrame:
     chosen = of[of["measure"].isin(list(SIGN)) & of["mark"].isin(marks)]
     for key, group in chosen.groupby(["case", "measure", "mark"], sort=False):
         case, measure, mark = map(str, key)
-        samples = {player: rows["value"].to_numpy() for player, rows in group.groupby("player")}
-        ours = samples.pop(contest.champion, np.empty(0))
+        samples = {str(name): (SIGN[measure] * rows["value"]).tolist() for name, rows in group.groupby("player")}
+        ours = samples.pop(contest.champion, [])
         for player, theirs in samples.items():
-            if len(ours):
-                p, a12 = rank_sum(SIGN[measure] * ours, SIGN[measure] * theirs)
-                found.append({"case": case, "player": player, "measure": measure, "mark": mark, "p": p, "a12": a12})
+            [test] = pair_tests({contest.champion: ours, player: theirs})
+            if test.p is not None:
+                found.append([case, player, measure, mark, test.p, test.effect])
     tests = pd.DataFrame(found, columns=["case", "player", "measure", "mark", "p", "a12"])
     return tests.assign(p=holm(tests["p"].tolist()))
 

@@ -11,7 +11,6 @@ from benchmarks.optimisers import contest, measures, page, players, runs
 from benchmarks.optimisers.cases import NAMES, VALVE, Case, case_of
 from benchmarks.optimisers.contest import Contest
 from benchmarks.optimisers.players import Player
-from benchmarks.optimisers.rank_tests import holm, rank_sum
 from benchmarks.optimisers.recorder import Recorder, RunOverError, entering
 
 from toy_model import toy_problem
@@ -107,15 +106,6 @@ def test_lambda_is_measured_against_the_optimum_of_each_direction(tmp_path, monk
     # z = (1, 0, 0) and (0.5, 0.25, 1); over the first direction, floor 1e-3: 1 and 1000; over the second: 2 and 4
     assert measures.attainment_excess(F) == pytest.approx([1.0, 1.0])
     measures.directions.cache_clear()
-
-
-def test_rank_sums_and_their_correction():
-    """Holm's own procedure by hand: 3·0.01, 2·0.02, 1·0.04."""
-    assert holm([0.04, 0.01, 0.02]) == pytest.approx([0.04, 0.03, 0.04])
-    p, a12 = rank_sum(np.array([3.0, 4.0, 5.0]), np.array([1.0, 2.0, 4.0]))
-    assert a12 == pytest.approx((2 + 2.5 + 3) / 9)
-    assert 0.0 < p < 1.0
-    assert rank_sum(np.ones(4), np.ones(4)) == (1.0, 0.5)
 
 
 def test_a_contest_is_played_measured_and_written(tmp_path, ours):

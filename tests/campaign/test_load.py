@@ -132,10 +132,10 @@ def test_mistakes_are_worded_with_file_line_and_column(tmp_path):
 def test_five_thousand_unknown_keys_are_refused_in_time(section):
     keys = "".join(f"  spool_radius_{i}: 1\n" for i in range(4900))
     lines = [line for line in QUICKSTART.split("\n") if not line.startswith(f"{section}:")]
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(FileMistakes):
         parse_campaign("\n".join(lines) + f"\n{section}:\n{keys}")
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 LINES = QUICKSTART.split("\n")
@@ -413,7 +413,7 @@ def test_the_shipped_campaigns_fit_the_schema(path):
         ("{max: 30 MPa}", "{}"),
         ("population: 40", "population: 1"),
         ("points: 10", "point: 10"),
-        ("nsga2:", "nsga3:"),
+        ("nsga2:", "nsga4:"),
         ("seeds: [1]", "seeds: [1, 1]"),
         ("workers: 2", "workers: 0"),
     ],

@@ -60,9 +60,9 @@ def test_a_worker_killed_once_costs_no_cell(calm, tmp_path):
 
 
 def test_a_design_that_kills_its_process_is_blamed_alone(calm, tmp_path):
-    run(tmp_path / "store", "way: fault, begin: 0.87, end: 0.885")
+    run(tmp_path / "store", "way: fault, begin: 0.82, end: 0.84")
     whole = pd.concat(logs(tmp_path / "store").values())
-    bad = whole.x3.between(0.87, 0.885)
+    bad = whole.x3.between(0.82, 0.84)
     assert bad.sum() >= 2
     assert (whole.outcome == "crashed").equals(bad)
     assert whole.outcome_text[bad].str.fullmatch("it killed its process, twice: signal 11, SIGSEGV").all()

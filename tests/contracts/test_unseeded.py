@@ -1,6 +1,7 @@
 """The guard against unseeded generators bites, whatever draws and however it was imported."""
 
 import contextlib
+import copy
 import os
 import random
 import secrets
@@ -60,6 +61,7 @@ def test_what_a_seed_governs_passes_and_draws_the_same():
             np.random.Generator(np.random.PCG64(3)).random(),
             random.Random(4).random(),
             np.random.default_rng(np.random.SeedSequence(5).spawn(2)[1]).random(),
+            copy.deepcopy(np.random.default_rng(6)).random(),
         ]
 
     with seeded_only():

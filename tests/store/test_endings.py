@@ -7,6 +7,7 @@ import pytest
 
 from divideropt.errors import DamagedFileError
 from divideropt.store import EndingRecord, Store
+from divideropt.store.endings import read_ending, write_ending
 
 RECORD = EndingRecord("goals", "nsga2-1/4 reaches every goal", 6, {"budget": 100, "termination": {"goals": True}})
 
@@ -63,3 +64,17 @@ def test_a_folder_in_its_place_is_refused(store):
     path(store).mkdir()
     with pytest.raises(DamagedFileError, match=r"nsga2-1\.json"):
         store.read_ending("nsga2-1")
+
+
+def test_two_runs_that_end_at_once_both_keep_why(tmp_path):
+    """Another process publishes the first ending of all between this one's look at the folder and its own rename."""
+    folder = tmp_path / "endings"
+
+    def meanwhile():
+        if not (folder / "genetic-1.json").exists():
+            folder.mkdir(exist_ok=True)
+            (folder / "genetic-1.json").write_text("theirs")
+
+    write_ending(folder / "nsga2-1.json", RECORD, meanwhile)
+    assert read_ending(folder / "nsga2-1.json") == RECORD
+    assert (folder / "genetic-1.json").read_text() == "theirs"

@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
-from joblib.externals.loky import ProcessPoolExecutor
+from joblib.externals.loky import ProcessPoolExecutor, process_executor
 from joblib.externals.loky.backend import resource_tracker
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
@@ -118,7 +118,7 @@ class LokyCrew(Crew):
         """
         with self._starting:
             before = set(_semaphores())
-            executor = ProcessPoolExecutor(1, env=_ONE_THREAD)
+            executor = ProcessPoolExecutor(1, env=_ONE_THREAD, initializer=_stay)
             self._executors.append(executor)
             ready = executor.submit(os.getpid)
             named = set(_semaphores()) - before
@@ -137,6 +137,14 @@ class LokyCrew(Crew):
 
 def _leave_signals_to_main_thread() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+
+
+def _stay() -> None:
+    """Keep loky from replacing this worker when it has grown by 300 MB, which imports and compiled code may make.
+
+    Its successor would look for semaphores that have no names any more.
+    """
+    process_executor._USE_PSUTIL = False
 
 
 def _start_tracker() -> None:

@@ -187,7 +187,7 @@ def _fronts(
         found = {**with_residuals(together, campaign, problem, store)}
     if found["combined"] is None:
         raise UsageError(f"{store.folder}: there are no fronts yet; run the campaign to its end first")
-    return {name: front for name, front in found.items() if front is not None}
+    return {name: front for name in names if (front := found[name]) is not None}  # in this order, made again or not
 
 
 def _distinct(fronts: Iterable[pa.Table]) -> pa.Table:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from divideropt.errors import DamagedFileError
-from divideropt.store.files import Check, publish, publish_folder
+from divideropt.store.files import Check, make_folder, publish
 
 LARGEST = 2**16
 """No such file is larger [bytes]."""
@@ -43,8 +43,9 @@ def write_ending(path: Path, record: EndingRecord, allowed: Check) -> None:
     content = json.dumps({**said, "sha256": _digest(said)}, indent=1, sort_keys=True).encode() + b"\n"
     if path.is_file() and path.stat().st_size == len(content) and path.read_bytes() == content:
         return
-    way = publish if path.parent.exists() else publish_folder
-    way(path, lambda p: p.write_bytes(content), allowed)
+    allowed()  # a store that is gone is not made anew
+    make_folder(path.parent)  # which another run's process may do at the same time
+    publish(path, lambda p: p.write_bytes(content), allowed)
 
 
 def read_ending(path: Path) -> EndingRecord | None:
