@@ -132,6 +132,8 @@ def test_it_repeats_and_replays_on_the_valve_to_the_bit(pair, valve):
 
 
 def test_it_beats_random_sampling(pair):
+    if getattr(pair[1], "solver", "complex") != "complex":
+        pytest.skip("slopes end where designs fail, and along there lies the toy's front; see test_gembicki.py")
     problem = toy_problem()
     reference = np.array([1.0, 20.0])
 
