@@ -131,9 +131,10 @@ def test_it_repeats_and_replays_on_the_valve_to_the_bit(pair, valve):
         assert [b.quantities.tobytes() for b in again] == [b.quantities.tobytes() for b in whole]
 
 
-def test_it_beats_random_sampling(pair):
+def test_it_beats_random_sampling(pair, request):
     if getattr(pair[1], "solver", "complex") != "complex":
-        pytest.skip("slopes end where designs fail, and along there lies the toy's front; see test_gembicki.py")
+        known = "a sweep along slopes covers the toy's front worse than random designs do in so few evaluations"
+        request.applymarker(pytest.mark.xfail(reason=known, strict=True))
     problem = toy_problem()
     reference = np.array([1.0, 20.0])
 

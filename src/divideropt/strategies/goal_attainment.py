@@ -42,6 +42,10 @@ warm-started complex are taken: large ones find, small ones polish."""
 VISIT_BY_SLOPES = 20
 """The same for SciPy's methods, which need some ten slopes; they mostly end by themselves before."""
 
+FINEST = 100_000
+"""Most directions of a round of SciPy's methods: what they have solved they cannot improve, so each of their rounds has
+twice as fine a lattice as the one before."""
+
 
 @dataclass(frozen=True, config=STRICT)
 class GoalAttainment:
@@ -81,8 +85,8 @@ class GoalAttainment:
             for _ in count():
                 for direction in reference_directions(objectives, most):
                     visit(direction)
-                if self.solver != "complex" and most < self.directions:
-                    most = min(most * 2 ** (objectives - 1), self.directions)
+                if self.solver != "complex" and objectives > 1:
+                    most = min(most * 2 ** (objectives - 1), FINEST)
         except BudgetSpentError:
             return
 
