@@ -43,8 +43,8 @@ VISIT_BY_SLOPES = 20
 """The same for SciPy's methods, which need some ten slopes; they mostly end by themselves before."""
 
 FINEST = 100_000
-"""Most directions of a round of SciPy's methods: what they have solved they cannot improve, so each of their rounds has
-twice as fine a lattice as the one before."""
+"""Most directions of a round of SciPy's methods: what they have solved they cannot improve, so each of their rounds
+has twice as fine a lattice as the one before."""
 
 
 @dataclass(frozen=True, config=STRICT)
