@@ -10,12 +10,14 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
-from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
+from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
-from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.campaign.ranges import read_range
+from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
 from divideropt.campaign.worst_case import worst_case_rules
-from divideropt.models import Parameter, Quantity
+from divideropt.models import Quantity
 
 MOST_WORKERS = 256
 """Beyond it a number of workers is a slip of the finger."""
@@ -156,22 +158,6 @@ def names_plugin(model: object) -> bool:
     return isinstance(model, Mapping) and isinstance(model.get("kind"), str) and ":" in model["kind"]
 
 
-def _range(parameter: Parameter, raw: object) -> tuple[float, float]:
-    if isinstance(raw, Mapping):
-        reserved = (
-            "`choices` and `step` are reserved" if {"choices", "step"} & raw.keys() else "a mapping is no range"
-        )
-        raise ValueError(f"{reserved}; write a range, [lower, upper]")
-    if not isinstance(raw, list | tuple) or len(raw) != 2:
-        raise ValueError(f"{show(raw)} is not a range; write two values, [lower, upper]")
-    ends = collect(dict(enumerate(raw)), (0, 1), "bound", lambda _, end: measure_of(parameter).read(end))
-    if ends[0] >= ends[1]:
-        raise ValueError(
-            f"the lower bound {show(raw[0])} is not below the upper, {show(raw[1])}; exchange or widen them"
-        )
-    return ends[0], ends[1]
-
-
 def _objective(quantity: Quantity, raw: object) -> ObjectiveConfig:
     return ObjectiveConfig.model_validate({} if raw is None else raw, context=measure_of(quantity))
 
@@ -215,7 +201,7 @@ class Campaign(Section):
     """What is optimised."""
     variables: Annotated[
         Mapping[str, tuple[float, float]],
-        PlainValidator(by_name("parameters", _range, least=1)),
+        PlainValidator(by_name("parameters", read_range, least=1)),
         WithJsonSchema(schemas.variables()),
     ]
     """Lower and upper bound of each parameter that varies, in its unit."""
@@ -241,6 +227,8 @@ class Campaign(Section):
     """Which front points are simulated again."""
     optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
     """How near to stationary front points are; 200 points by the valve's compiled solver, by others none."""
+    sensitivity: SensitivityConfig = SensitivityConfig()
+    """What `divideropt sensitivity` varies, and how it samples that."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 
@@ -248,7 +236,8 @@ class Campaign(Section):
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say what does not fit together between sections."""
         fixed = _section(_section(raw, "model"), "set")
-        for name in _section(raw, "variables"):
+        varying = () if is_study(_section(raw, "strategies")) else _section(raw, "variables")
+        for name in varying:
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)

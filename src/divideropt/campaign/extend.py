@@ -19,7 +19,7 @@ from divideropt.errors import StoreError
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 
-BUDGETS = ("generations", "evaluations")
+BUDGETS = ("generations", "evaluations", "trajectories", "samples")
 """Options that may grow."""
 
 PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point")
@@ -44,8 +44,8 @@ def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
         raise StoreError(
             f"{where}: this store belongs to another campaign:\n  "
             + "\n  ".join(differences)
-            + "\nOnly generations, evaluations, seeds and strategies may be added, and a termination changed; name "
-            "another folder (--store), or start anew (--fresh, which moves the old store aside)."
+            + "\nOnly generations, evaluations, trajectories, samples, seeds and strategies may be added, and a "
+            "termination changed; name another folder (--store), or start anew (--fresh, which moves the old store aside)."
         )
 
 

@@ -110,6 +110,13 @@ def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
         if objection is not None:
             option, sentence = objection
             yield from _placed(document, ("strategies", plan.name, option), sentence)
+        budget = plan.options.budget(len(campaign.variables))
+        if plan.window is not None and plan.window >= budget:
+            sentence = (
+                f"{plan.window} is too large for a budget of {budget} evaluations, within which it would never end a "
+                "run; give a smaller window, or a larger budget"
+            )
+            yield from _placed(document, ("strategies", plan.name, "termination", "stagnation", "window"), sentence)
 
 
 def _reported(document: Document, detail: ErrorDetails) -> list[Mistake]:

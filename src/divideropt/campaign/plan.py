@@ -26,6 +26,7 @@ class Run:
         strategy: The strategy's name.
         options: The strategy.
         seed: Its seed.
+        budget: Most evaluations it asks for.
         termination: By which rules it ends before its budget is spent; None by none.
     """
 
@@ -33,13 +34,15 @@ class Run:
     strategy: str
     options: Strategy
     seed: int
+    budget: int
     termination: TerminationConfig | None = None
 
 
 def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
     """List the runs, in the campaign's order."""
+    variables = len(campaign.variables)
     return tuple(
-        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.termination)
+        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.options.budget(variables), plan.termination)
         for plan in campaign.strategies
         for seed in plan.seeds
     )

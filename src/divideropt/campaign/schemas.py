@@ -23,6 +23,11 @@ def variables() -> Schema:
     return _mapping("What varies, and between which bounds.", {p.name: _range(p) for p in PARAMETERS.values()}, 1)
 
 
+def study() -> Schema:
+    """Ranges of parameters in a study."""
+    return _mapping("What is studied, and between which ends.", {p.name: _range(p) for p in PARAMETERS.values()})
+
+
 def objectives() -> Schema:
     """Goals and weights of quantities."""
     return _prefixable(_mapping("What is minimised.", _each(_objective), 1))
