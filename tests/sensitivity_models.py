@@ -3,6 +3,7 @@
 from itertools import combinations
 
 import numpy as np
+from SALib.sample import sobol
 
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
 
@@ -84,3 +85,11 @@ def g_indices():
     total = {n: v[i] * np.prod(np.delete(1 + v, i)) / variance for i, n in enumerate(names)}
     second = {(names[i], names[j]): v[i] * v[j] / variance for i, j in combinations(range(len(v)), 2)}
     return first, total, second
+
+
+def sample(model, samples, second_order=True, seed=1):
+    """Designs of a Sobol study of a model over its parameters' domains."""
+    names = list(model.parameters)
+    bounds = [[p.domain.lower, p.domain.upper] for p in model.parameters.values()]
+    description = {"num_vars": len(names), "names": names, "bounds": bounds}
+    return sobol.sample(description, samples, calc_second_order=second_order, seed=seed)

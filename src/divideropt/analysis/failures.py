@@ -43,9 +43,8 @@ class Failures:
     @property
     def shares(self) -> FloatArray:
         """Part that failed of the designs in each part of a range, NaN where there is none, shape (d, PARTS)."""
-        return np.divide(
-            self.failed, self.counts, out=np.full(self.counts.shape, np.nan), where=self.counts > 0, dtype=np.float64
-        )
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.failed / self.counts)
 
 
 def failures_of(evaluations: Evaluations, space: DesignSpace) -> Failures:

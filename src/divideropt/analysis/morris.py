@@ -13,7 +13,7 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace, Evaluations, Problem
 
 RESAMPLES = 1000
-"""Bootstrap resamples of μ*, SALib's own default."""
+"""Bootstrap resamples of μ*: ten times SALib's default, since they cost nothing."""
 
 LEAST_EFFECTS = 4
 """Elementary effects of a variable below which nothing is said of it."""
@@ -26,9 +26,9 @@ class MorrisStudy:
     """What a Morris sample says.
 
     Attributes:
-        effects: A row a number, with the columns of a table of indices: `kind` mu, mu_star or sigma, in the quantity's
-            unit for a way of one range of the variable; `low` and `high` the 95 % interval of mu_star, NaN of others;
-            `samples` the trajectories; `used` the part of a variable's steps that gave an effect.
+        effects: A row a number, with the columns of a table of indices: `kind` mu, mu_star or sigma, in the
+            quantity's unit for a way of one range of the variable; `low` and `high` the 95 % interval of mu_star, NaN
+            of others; `samples` the trajectories; `used` the part of a variable's steps that gave an effect.
         undefined: The quantities that have none under a treatment.
         failures: Where designs failed.
         trajectories: Number of trajectories.
@@ -95,7 +95,7 @@ def _ways(designs: FloatArray, space: DesignSpace) -> FloatArray:
 
 
 def _effects(item: Treated, ways: FloatArray) -> FloatArray:
-    """Elementary effects, NaN where a step begins or ends in a design that does not count, shape (trajectories, d)."""
+    """Elementary effects by step and variable, NaN where an end of the step does not count, shape (r, d)."""
     values = np.where(item.kept, item.values, np.nan).reshape(len(ways), -1)
     moved = np.abs(ways).argmax(axis=2)
     effects = np.diff(values, axis=1) / np.take_along_axis(ways, moved[:, :, None], axis=2)[:, :, 0]
@@ -152,4 +152,5 @@ def _rows(
             ).astype({"with": object})
         )
     table = pd.concat(tables)
-    return table[np.isfinite(table["value"])]
+    known: pd.DataFrame = table[np.isfinite(table["value"])]
+    return known

@@ -1,11 +1,11 @@
 """Sobol indices of one quantity from a pick-freeze sample, and their bootstrap intervals.
 
-A sample's blocks are those of `SALib.sample.sobol`: A, AB_1 … AB_d, [BA_1 … BA_d,] B. Design AB_i is A with variable i
-taken from B, and BA_i is B with variable i taken from A.
+A sample's blocks are those of `SALib.sample.sobol`: A, AB_1 … AB_d, [BA_1 … BA_d,] B. Design AB_i is A with variable
+i taken from B, and BA_i is B with variable i taken from A.
 
-An index is a function of means over the blocks, so a bootstrap needs the blocks' terms once and then only sums of them,
-weighted by how often a block was drawn: one product of matrices. SALib draws the same blocks, but copies every value for
-every resample.
+An index is a function of means over the blocks, so a bootstrap needs the blocks' terms once and then only sums of
+them, weighted by how often a block was drawn: one product of matrices. SALib draws the same blocks, but copies every
+value for every resample.
 """
 
 from collections.abc import Callable
@@ -51,7 +51,9 @@ class Blocks:
     @property
     def keys(self) -> list[tuple[str, int, int | None]]:
         """The indices in their order: kind, variable, and of a second-order one the other variable."""
-        single: list[tuple[str, int, int | None]] = [(k, i, None) for k in ("S1", "ST") for i in range(self.variables)]
+        single: list[tuple[str, int, int | None]] = [
+            (k, i, None) for k in ("S1", "ST") for i in range(self.variables)
+        ]
         return single + [("S2", i, j) for i, j in self.pairs]
 
     @property
@@ -135,8 +137,9 @@ def by_pairs(values: FloatArray, kept: Bools, blocks: Blocks, least: int) -> Est
     The total index of a variable is 1 - ρ, ρ the correlation of the quantity between designs that differ in that
     variable only; its first-order index is the correlation between designs that share that variable only (Janon et
     al. 2014, Asymptotic normality and efficiency of two Sobol index estimators, equation 6), each over the pairs of
-    which both are kept. Where all are, these are Sobol indices; where not, the variables of the kept designs depend on
-    each other, and an index says what it says here: by how much two working designs differ that differ in one variable.
+    which both are kept. Where all are, these are Sobol indices; where not, the variables of the kept designs depend
+    on each other, and an index says what it says here: by how much two working designs differ that differ in one
+    variable.
 
     Args:
         values: Shape (n, blocks.size); those not kept may be anything.
@@ -173,7 +176,12 @@ def _saltelli(y: FloatArray, blocks: Blocks) -> tuple[FloatArray, Combine]:
     """The terms of SALib's estimators, shape (n, c), and what makes indices of their means."""
     d, a, b = blocks.variables, y[:, 0], y[:, blocks.b]
     ab = y[:, 1 : 1 + d]
-    terms = [(a + b)[:, None] / 2, (a**2 + b**2)[:, None] / 2, b[:, None] * (ab - a[:, None]), (a[:, None] - ab) ** 2 / 2]
+    terms = [
+        (a + b)[:, None] / 2,
+        (a**2 + b**2)[:, None] / 2,
+        b[:, None] * (ab - a[:, None]),
+        (a[:, None] - ab) ** 2 / 2,
+    ]
     terms += [(y[:, blocks.ba(i)] * y[:, blocks.ab(j)] - a * b)[:, None] for i, j in blocks.pairs]
 
     def combine(means: FloatArray) -> FloatArray:

@@ -15,8 +15,8 @@ LEAST_BLOCKS = 32
 """Blocks, or pairs of working designs, below which an index is not worth a number."""
 
 LEAST_DEFINED = 0.95
-"""Part of the blocks in which a quantity must be defined throughout where the others are left out: those that are left
-are no sample of the box any more."""
+"""Part of the blocks in which a quantity must be defined throughout where the others are left out: those that are
+left are no sample of the box any more."""
 
 COLUMNS = ("quantity", "variable", "with", "kind", "value", "low", "high", "samples", "treatment", "used")
 """Columns of a table of indices."""
@@ -27,9 +27,10 @@ class SobolStudy:
     """What a Sobol sample says.
 
     Attributes:
-        indices: A row an index, see `COLUMNS`: `kind` S1, ST or S2, of S2 the other variable in `with`, `low` and `high` the
-            95 % interval, `samples` the blocks it is made from (fewer than all: the same sample's beginning),
-            `treatment` what was done about failed designs, `used` the part of blocks or pairs that it rests on.
+        indices: A row an index, see `COLUMNS`: `kind` S1, ST or S2, of S2 the other variable in `with`, `low` and
+            `high` the 95 % interval, `samples` the blocks it is made from (fewer than all: the same sample's
+            beginning), `treatment` what was done about failed designs, `used` the part of blocks or pairs that it
+            rests on.
         undefined: The quantities that have none under a treatment.
         failures: Where designs failed.
         blocks: Number of blocks.
@@ -52,10 +53,12 @@ def sobol_study(evaluations: Evaluations, problem: Problem) -> SobolStudy:
 
     Args:
         evaluations: In the order of `SALib.sample.sobol`; an unfinished last block is left out.
-        problem: What was simulated; of signed quantities the magnitude is analysed, as objectives and constraints have it.
+        problem: What was simulated; of signed quantities the magnitude is analysed, as objectives and constraints
+        have it.
 
     Returns:
-        The indices of all blocks under every treatment, and under the first of each quantity those of N/2, N/4, … blocks.
+        The indices of all blocks under every treatment, and under the first of each quantity those of N/2, N/4, …
+        blocks.
 
     Raises:
         ValueError: The designs are no pick-freeze sample, or less than a block.
@@ -98,20 +101,17 @@ def sobol_study(evaluations: Evaluations, problem: Problem) -> SobolStudy:
 
 def _estimate(item: Treated, layout: Blocks) -> Estimate | str:
     """Estimate the indices, or say why there are none."""
-    values, kept = item.values.reshape(-1, layout.size), item.kept.reshape(-1, layout.size)
-    if not item.kept.any():
-        return "it is defined in no design that counts"
     if item.constant:
-        return "it is constant"
+        return "it is constant" if item.kept.any() else "it is defined in no design that counts"
+    values, kept = item.values.reshape(-1, layout.size), item.kept.reshape(-1, layout.size)
     if item.treatment is Treatment.WORKING:
         found = by_pairs(values, kept, layout, LEAST_BLOCKS)
         return found if np.isfinite(found.values).any() else f"fewer than {LEAST_BLOCKS} pairs of designs have it"
     full = kept.all(axis=1)
-    if full.sum() < LEAST_BLOCKS:
-        return f"it is defined throughout in {full.sum()} blocks, fewer than {LEAST_BLOCKS}"
-    if full.mean() < LEAST_DEFINED:
-        return f"it is defined throughout in {100 * full.mean():.3g} % of the blocks, less than {100 * LEAST_DEFINED:g} %"
-    if Treated(item.treatment, values[full].ravel(), np.ones(full.sum() * layout.size, dtype=bool)).constant:
+    if full.sum() < LEAST_BLOCKS or full.mean() < LEAST_DEFINED:
+        least = f"{LEAST_BLOCKS}" if full.mean() >= LEAST_DEFINED else f"{100 * LEAST_DEFINED:g} %"
+        return f"it is defined throughout in {full.sum()} of {len(full)} blocks, less than {least}"
+    if np.ptp(values[full]) == 0.0:
         return "it is constant"
     found = whole(values[full], layout)
     return Estimate(found.values, found.half, np.full(len(found.values), full.mean()))
@@ -151,7 +151,8 @@ def _rows(
             "used": found.used,
         }
     ).astype({"with": object})
-    return table[np.isfinite(table["value"])]
+    known: pd.DataFrame = table[np.isfinite(table["value"])]
+    return known
 
 
 def _numbered(items: Iterator[Treated]) -> Iterator[tuple[bool, Treated]]:

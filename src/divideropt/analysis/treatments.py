@@ -15,7 +15,8 @@ CONSTANT = 1e-12
 """A quantity that varies by no more than this part of its size is constant: the rest is rounding."""
 
 OUTCOME = "outcome"
-"""Stands among the quantities for 1 where a design's outcome is ok, else 0; no quantity has this name, a column has."""
+"""Stands among the quantities for 1 where a design's outcome is ok, else 0; no quantity has this name, a column
+has."""
 
 
 class Treatment(StrEnum):
