@@ -21,6 +21,7 @@ from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests,
 from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
+from divideropt.analysis.sweeps import Effect, Failures, Study, Sweep, effects_of, study_of
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -29,6 +30,8 @@ __all__ = [
     "Comparison",
     "Contender",
     "Convergence",
+    "Effect",
+    "Failures",
     "Goals",
     "Indicator",
     "Kkt",
@@ -37,7 +40,9 @@ __all__ = [
     "Ranking",
     "Scale",
     "Score",
+    "Study",
     "Summary",
+    "Sweep",
     "Tally",
     "Verified",
     "achievement",
@@ -51,6 +56,7 @@ __all__ = [
     "converged",
     "convergence",
     "effect_size",
+    "effects_of",
     "gaps",
     "holm",
     "hypervolume",
@@ -75,6 +81,7 @@ __all__ = [
     "residuals",
     "scales_of",
     "several_test",
+    "study_of",
     "summarise",
     "tally",
     "worst_surface",
