@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from divideropt.analysis.sweeps import Study, Sweep, effects_of, study_of
+from divideropt.analysis.sweeps import Sweep, Sweeps, effects_of, sweeps_of
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
 from divideropt.problem import DesignSpace, Evaluations, Objective, Problem, Variable
 
@@ -57,8 +57,8 @@ def sweeps(of: Problem, points: int = POINTS) -> Evaluations:
 
 
 @pytest.fixture(scope="module")
-def study() -> Study:
-    return study_of(sweeps(problem()), problem(), POINTS)
+def study() -> Sweeps:
+    return sweeps_of(sweeps(problem()), problem(), POINTS)
 
 
 @pytest.fixture
@@ -85,18 +85,18 @@ def test_each_sweep_has_its_parameter_and_every_quantity(study):
 
 def test_a_sweep_that_is_not_whole_is_left_out(study):
     evaluations = sweeps(problem())
-    found = study_of(evaluations.part(0, POINTS + 5), problem(), POINTS)
+    found = sweeps_of(evaluations.part(0, POINTS + 5), problem(), POINTS)
     assert [sweep.parameter for sweep in found.sweeps] == ["x"]
-    assert study_of(evaluations.part(0, 0), problem(), POINTS).sweeps == ()
+    assert sweeps_of(evaluations.part(0, 0), problem(), POINTS).sweeps == ()
 
 
 def test_what_is_no_sweep_is_refused():
     evaluations = sweeps(problem())
     with pytest.raises(ValueError, match="batch 0 of the log does not vary x alone"):
-        study_of(evaluations.part(1, len(evaluations)), problem(), POINTS)
+        sweeps_of(evaluations.part(1, len(evaluations)), problem(), POINTS)
     backwards = Evaluations(evaluations.designs[::-1], evaluations.quantities, evaluations.verdicts)
     with pytest.raises(ValueError, match="does not vary x alone, and rising"):
-        study_of(backwards, problem(), POINTS)
+        sweeps_of(backwards, problem(), POINTS)
 
 
 def test_the_base_is_the_campaigns_own_design(study):
@@ -107,16 +107,16 @@ def test_the_base_is_the_campaigns_own_design(study):
 
 def test_the_base_between_two_designs_is_on_a_straight_line():
     alone = problem({"x": RANGES["x"]})
-    base = study_of(sweeps(alone), alone, POINTS).base
+    base = sweeps_of(sweeps(alone), alone, POINTS).base
     assert base["line"] == pytest.approx(4.0 * (0.25 - 0.7), rel=1e-12)
     assert base["square"] == pytest.approx((0.2**2 + 0.3**2) / 2, rel=1e-12)
 
 
 def test_there_is_no_base_where_it_fails_or_lies_outside_every_range():
     outside = problem({"x": (0.5, 2.0)})
-    assert np.isnan(study_of(sweeps(outside), outside, POINTS).base["line"])
+    assert np.isnan(sweeps_of(sweeps(outside), outside, POINTS).base["line"])
     failing = Problem(outside.model, BASE | {"x": 1.15}, problem().space, problem().objectives)
-    assert np.isnan(study_of(sweeps(failing), failing, POINTS).base["square"])
+    assert np.isnan(sweeps_of(sweeps(failing), failing, POINTS).base["square"])
 
 
 def test_effects_are_ranges_over_the_base_value(study):

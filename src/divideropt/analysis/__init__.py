@@ -21,7 +21,7 @@ from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests,
 from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
-from divideropt.analysis.sweeps import Effect, Failures, Study, Sweep, effects_of, study_of
+from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -40,9 +40,9 @@ __all__ = [
     "Ranking",
     "Scale",
     "Score",
-    "Study",
     "Summary",
     "Sweep",
+    "Sweeps",
     "Tally",
     "Verified",
     "achievement",
@@ -81,8 +81,8 @@ __all__ = [
     "residuals",
     "scales_of",
     "several_test",
-    "study_of",
     "summarise",
+    "sweeps_of",
     "tally",
     "worst_surface",
     "worth_verifying",

@@ -115,7 +115,7 @@ class Effect:
 
 
 @dataclass(frozen=True)
-class Study:
+class Sweeps:
     """Sweeps of one campaign.
 
     Attributes:
@@ -127,7 +127,7 @@ class Study:
     base: Mapping[str, float]
 
 
-def study_of(evaluations: Evaluations, problem: Problem, points: int) -> Study:
+def sweeps_of(evaluations: Evaluations, problem: Problem, points: int) -> Sweeps:
     """Take a log apart.
 
     Args:
@@ -154,7 +154,7 @@ def study_of(evaluations: Evaluations, problem: Problem, points: int) -> Study:
             )
         quantities = dict(zip(problem.model.quantities, part.quantities.T, strict=True))
         sweeps.append(Sweep(variable.parameter.name, float(base[place]), values, quantities, part.verdicts))
-    return Study(tuple(sweeps), base_of(sweeps, list(problem.model.quantities)))
+    return Sweeps(tuple(sweeps), base_of(sweeps, list(problem.model.quantities)))
 
 
 def base_of(sweeps: Sequence[Sweep], names: Sequence[str]) -> Mapping[str, float]:
