@@ -67,6 +67,29 @@ def test_the_reference_has_the_same_columns(design) -> None:
         assert fast["settling_time"] != exact["settling_time"]
 
 
+def test_a_scenario_sets_parameters_whatever_the_design_says(design) -> None:
+    changes = {"low": {"kinematic_viscosity": 15e-6, "coulomb_friction": 2.0}}
+    model = Scenarios(MODELS, (Worst("dynamic_error", (BASE, "low")),), changes)
+    parameters = [design(), design("thesis_prototype")]
+    given = np.array([list(p.values()) for p in parameters])
+    asked = given.copy()
+    rows, _ = evaluated(model, *parameters)
+    expected, _ = evaluated(MODELS["low"], *({**p, **changes["low"]} for p in parameters))
+    others, _ = evaluated(MODELS["low"], *parameters)
+    base, _ = evaluated(MODELS[BASE], *parameters)
+    for q, low, other, plain in zip(rows, expected, others, base, strict=True):
+        assert q["low.dynamic_error"] == low["dynamic_error"] != other["dynamic_error"]
+        assert q["dynamic_error"] == plain["dynamic_error"]
+        assert q["worst.dynamic_error"] == max(low["dynamic_error"], plain["dynamic_error"], key=abs)
+    model.evaluate(asked)
+    np.testing.assert_array_equal(asked, given)  # the caller's designs are as they were
+    shared = model.on_threads(2)
+    assert shared is not None
+    assert shared.changes == changes
+    reference, _ = evaluated(model.reference(), parameters[0])
+    assert reference[0]["low.dynamic_error"] == pytest.approx(expected[0]["dynamic_error"], rel=2e-3)
+
+
 def test_threads_share_the_batches_of_every_scenario(box_designs) -> None:
     designs = np.array([list(p.values()) for p in box_designs(12)])
     models = {

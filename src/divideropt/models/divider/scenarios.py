@@ -1,7 +1,7 @@
 """Several scenarios on one design: the quantities of each, and the worst of some of them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -41,10 +41,12 @@ class Scenarios:
     Attributes:
         models: The divider under each by name; that of `BASE` first.
         worst: What is to be gathered over them.
+        changes: Parameters that a scenario sets whatever the design says, SI, by its name and theirs.
     """
 
     models: Mapping[str, Divider]
     worst: tuple[Worst, ...] = ()
+    changes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def base(self) -> Divider:
@@ -75,7 +77,7 @@ class Scenarios:
         columns: dict[str, FloatArray] = {}
         verdicts: list[Verdict] = []
         for name, model in self.models.items():
-            values, found = model.evaluate(designs)
+            values, found = model.evaluate(self._under(name, designs))
             columns |= {_prefixed(name, key): values[:, i] for i, key in enumerate(model.quantities)}
             verdicts = (
                 [*found] if name == BASE else [_first(a, b, name) for a, b in zip(verdicts, found, strict=True)]
@@ -84,6 +86,15 @@ class Scenarios:
             over = np.array([columns[_prefixed(name, worst.quantity)] for name in worst.scenarios])
             columns[worst.name] = _worst_of(over, quantities[worst.name].signed, worst.least)
         return np.column_stack([columns[name] for name in quantities]), verdicts
+
+    def _under(self, name: str, designs: FloatArray) -> FloatArray:
+        """Return designs as a scenario has them, shape (n, d)."""
+        changes = self.changes.get(name)
+        if not changes:
+            return designs
+        order, changed = list(self.parameters), designs.copy()
+        changed[:, [order.index(parameter) for parameter in changes]] = list(changes.values())
+        return changed
 
     def on_threads(self, threads: int) -> "Scenarios | None":
         """Return the same model, its batches shared by threads; None where one of the scenarios' cannot be."""
