@@ -46,6 +46,24 @@ def test_the_worst_is_the_largest_and_a_signed_one_keeps_its_sign(design) -> Non
     assert model.quantities["worst.dynamic_error"].signed
 
 
+def test_mirrored_scenarios_do_not_dice_for_the_sign(box_designs) -> None:
+    mirrored = {BASE: Divider(), "other_load": Divider(scenario=Scenario(events=(load_step(2, 15e6),)))}
+    over = (BASE, "other_load")
+    model = Scenarios(mirrored, (Worst("load_regulation", over), Worst("dynamic_error", over)))
+    rows, verdicts = evaluated(model, *box_designs(40))
+    sound = [q for q, verdict in zip(rows, verdicts, strict=True) if verdict.ok]
+    assert len(sound) > 20
+    larger = 0
+    for q in sound:
+        both = [q["load_regulation"], q["other_load.load_regulation"]]
+        assert both[0] == pytest.approx(-both[1], rel=1e-6)
+        larger += abs(both[1]) > abs(both[0])
+        assert q["worst.load_regulation"] * both[0] > 0  # the first one's sign
+        assert abs(q["worst.load_regulation"]) == max(map(abs, both))
+        assert abs(q["worst.dynamic_error"]) == max(abs(q["dynamic_error"]), abs(q["other_load.dynamic_error"]))
+    assert larger > 0  # by a rounding
+
+
 def test_a_scenario_that_fails_is_named_and_its_worst_is_not_known(design) -> None:
     short = Divider(scenario=Scenario(events=(load_step(1, 15e6),), end_time=0.01))
     model = Scenarios({**MODELS, "short": short}, (Worst("settling_time", (BASE, "short")),))

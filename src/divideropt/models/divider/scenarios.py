@@ -13,6 +13,9 @@ from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
 BASE = "scenario"
 """Name of the scenario whose quantities have plain names."""
 
+AS_GOOD_AS_EQUAL = 1e-3
+"""Part of a magnitude within which two scenarios are equally bad: some times what the solver's tolerance leaves."""
+
 
 @dataclass(frozen=True)
 class Worst:
@@ -147,6 +150,9 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     """Gather the worst of each design, NaN where one is; a signed quantity counts by its magnitude, and stays signed.
 
+    Of scenarios that are as good as equal in magnitude the first gives the sign: mirrored ones, as of a step in either
+    load, are equal but for what the solver rounds, and their sign would be a matter of chance.
+
     Args:
         over: Shape (scenarios, n).
         signed: Whether magnitudes are compared.
@@ -158,5 +164,8 @@ def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     size = np.abs(over) if signed else over
     lost = np.isnan(size).any(axis=0)
     size = np.where(lost, 0.0, size)
-    rows = size.argmin(axis=0) if least else size.argmax(axis=0)
-    return np.where(lost, np.nan, np.take_along_axis(over, rows[None], axis=0)[0])
+    worst = size.min(axis=0) if least else size.max(axis=0)
+    if signed:
+        first = (np.abs(size - worst) <= AS_GOOD_AS_EQUAL * worst).argmax(axis=0)
+        worst = np.copysign(worst, np.take_along_axis(over, first[None], axis=0)[0])
+    return np.where(lost, np.nan, worst)
