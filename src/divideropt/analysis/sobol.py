@@ -110,7 +110,7 @@ def _estimate(item: Treated, layout: Blocks) -> Estimate | str:
     full = kept.all(axis=1)
     if full.sum() < LEAST_BLOCKS or full.mean() < LEAST_DEFINED:
         least = f"{LEAST_BLOCKS}" if full.mean() >= LEAST_DEFINED else f"{100 * LEAST_DEFINED:g} %"
-        return f"it is defined throughout in {full.sum()} of {len(full)} blocks, less than {least}"
+        return f"it is defined throughout in {full.sum()} of {len(values)} blocks, less than {least}"
     if np.ptp(values[full]) == 0.0:
         return "it is constant"
     found = whole(values[full], layout)

@@ -2,9 +2,17 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeVar
 
-from pydantic import AfterValidator, Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign import schemas
@@ -16,8 +24,10 @@ from divideropt.campaign.ranges import read_range
 from divideropt.campaign.sections import Section, mistake, show, together
 from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
-from divideropt.campaign.worst_case import worst_case_rules
+from divideropt.campaign.worst_case import named_scenarios, read_worst_of, worst_case_rules
 from divideropt.models import Quantity
+
+S = TypeVar("S", "ObjectiveConfig", "ConstraintConfig")
 
 MOST_WORKERS = 256
 """Beyond it a number of workers is a slip of the finger."""
@@ -49,8 +59,8 @@ class ObjectiveConfig(Section):
     """F* of (3.24), in the quantity's unit."""
     weight: Annotated[float, Measure("", POSITIVE)] = 1.0
     """w of (3.24)."""
-    worst_of: tuple[str, ...] = ()
-    """Scenarios over which the quantity's largest value counts, by name; `scenario` is the model's own."""
+    worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
+    """Scenarios over which the quantity's largest value counts; `scenario` is the model's own, `all` every one."""
 
 
 class ConstraintConfig(Section):
@@ -60,8 +70,8 @@ class ConstraintConfig(Section):
     """Lower bound, in the quantity's unit."""
     max: Annotated[float, GivenMeasure()] | None = None
     """Upper bound, in the quantity's unit."""
-    worst_of: tuple[str, ...] = ()
-    """Scenarios in all of which the bounds are kept, by name; `scenario` is the model's own."""
+    worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
+    """Scenarios in all of which the bounds are kept; `scenario` is the model's own, `all` every one."""
 
     @model_validator(mode="after")
     def _bounds(self) -> Self:
@@ -166,6 +176,15 @@ def _constraint(quantity: Quantity, raw: object) -> ConstraintConfig:
     return ConstraintConfig.model_validate(raw, context=measure_of(quantity))
 
 
+def _with_names(sections: Mapping[str, S], info: ValidationInfo) -> dict[str, S]:
+    """Name the scenarios of objectives or constraints that are over all."""
+    model = info.data.get("model")
+    return {
+        name: section.model_copy(update={"worst_of": named_scenarios(section.worst_of, model)})
+        for name, section in sections.items()
+    }
+
+
 def _reference_value(quantity: Quantity, raw: object) -> float:
     value = measure_of(quantity).read(raw)
     if value <= 0.0:
@@ -208,12 +227,14 @@ class Campaign(Section):
     objectives: Annotated[
         Mapping[str, ObjectiveConfig],
         PlainValidator(by_name("quantities", _objective, least=1)),
+        AfterValidator(_with_names),
         WithJsonSchema(schemas.objectives()),
     ]
     """What is minimised."""
     constraints: Annotated[
         Mapping[str, ConstraintConfig],
         PlainValidator(by_name("quantities", _constraint)),
+        AfterValidator(_with_names),
         WithJsonSchema(schemas.constraints()),
     ] = Field(default_factory=dict)
     """What a feasible design keeps."""
@@ -241,6 +262,7 @@ class Campaign(Section):
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
+        yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
@@ -249,6 +271,16 @@ class Campaign(Section):
             if aggregating and given is None:
                 sentence = f"{name} has no goal, by which {aggregating} weighs the objectives; give one, {{goal: …}}"
                 yield mistake(("objectives", name), sentence, at_key=True)
+
+
+def _scenario_set_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
+    """Say which variables a scenario sets, so that they would vary in some of the simulations only."""
+    scenarios, variables = _section(_section(raw, "model"), "scenarios"), _section(raw, "variables")
+    for scenario in scenarios:
+        for name in _section(_section(scenarios, scenario), "set"):
+            if name in variables:
+                sentence = f"{name} is a variable, which no scenario can set; delete it here, or from `variables`"
+                yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
 
 
 def _section(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -27,6 +27,8 @@ def dump_campaign(campaign: Campaign) -> str:
     data = campaign.model_dump(mode="json", exclude_none=True, exclude={"model", *_BY_NAME})
     data["model"] = campaign.model.model_dump(mode="json", exclude_none=True)
     data["model"]["set"] = _measures(campaign.model.set, parameters)
+    for scenario in data["model"].get("scenarios", {}).values():
+        scenario["set"] = _measures(scenario["set"], parameters)
     data["variables"] = _ranges(campaign.variables, parameters)
     data["sensitivity"]["parameters"] = _ranges(campaign.sensitivity.parameters, parameters)
     data["objectives"] = _sections(campaign.objectives, quantities)

@@ -45,7 +45,8 @@ def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
             f"{where}: this store belongs to another campaign:\n  "
             + "\n  ".join(differences)
             + "\nOnly generations, evaluations, trajectories, samples, seeds and strategies may be added, and a "
-            "termination changed; name another folder (--store), or start anew (--fresh, which moves the old store aside)."
+            "termination changed; name another folder (--store), or start anew (--fresh, which moves the old store "
+            "aside)."
         )
 
 

@@ -58,7 +58,7 @@ def build_model(campaign: Campaign) -> Model:
         for name, scenario in config.all_scenarios().items()
     }
     worst = worst_cases(campaign)
-    return Scenarios(models, worst) if worst or len(models) > 1 else models[BASE]
+    return Scenarios(models, worst, config.changes()) if worst or len(models) > 1 else models[BASE]
 
 
 def dividers(model: Model) -> Mapping[str, Divider]:

@@ -88,8 +88,11 @@ def _given(name: str) -> Schema:
     return {"type": "object", "required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
-RESERVED_NAMES = ("worst", "least")
-"""What a column's name may begin with already."""
+EVERY = "all"
+"""Stands for every scenario of a campaign, under `worst_of`."""
+
+RESERVED_NAMES = ("worst", "least", EVERY)
+"""What no scenario is called: what a column's name may begin with already, and what stands for every scenario."""
 
 
 def scenario_name() -> str:
@@ -141,10 +144,10 @@ def _constraint(quantity: Quantity) -> Schema:
 
 
 def _worst_of() -> Schema:
+    description = f"Scenarios of which the worst counts: names of `model.scenarios`, or `scenario`; or `{EVERY}`."
     return {
-        "type": "array",
-        "description": "Scenarios of which the worst counts: names of `model.scenarios`, or `scenario`.",
-        "items": {"type": "string"},
+        "description": description,
+        "anyOf": [{"const": EVERY}, {"type": "array", "items": {"type": "string"}}],
     }
 
 

@@ -5,6 +5,7 @@ from divideropt.report.page import write_report
 from divideropt.report.response_page import Curve, ResponseCurves, response_page, write_response
 from divideropt.report.sensitivity_data import read_study
 from divideropt.report.sensitivity_page import study_text, write_study
+from divideropt.report.sweeps_page import write_sweeps
 
 __all__ = [
     "Curve",
@@ -18,4 +19,5 @@ __all__ = [
     "write_report",
     "write_response",
     "write_study",
+    "write_sweeps",
 ]

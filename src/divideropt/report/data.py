@@ -36,6 +36,7 @@ from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.sampling import spread
 from divideropt.report.setting import setting_of
+from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.store import Store, TableSchema
 
 MOST_DRAWN = 4000
@@ -95,6 +96,7 @@ class ReportData:
         responses: The step responses; None for a model that has none.
         notes: Sentences on the state of the store.
         versions: Versions of libraries by name.
+        studies: The campaign's sensitivity studies in short.
     """
 
     name: str
@@ -115,6 +117,7 @@ class ReportData:
     responses: Responses | None
     notes: tuple[str, ...]
     versions: Mapping[str, str]
+    studies: tuple[StudySummary, ...] = ()
 
     @property
     def strategies(self) -> tuple[str, ...]:
@@ -187,6 +190,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         read_responses(problem, front, best),
         _progress(facts, store) + notes,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+        study_summary(store),
     )
 
 

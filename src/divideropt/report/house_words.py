@@ -1,8 +1,37 @@
-"""What follows from a House of Quality, in a sentence or two."""
+"""A House of Quality as a table, and what follows from it in a sentence or two."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from divideropt.analysis.house_of_quality import WORTHWHILE, House
+from divideropt.analysis.house_of_quality import WORTHWHILE, Criterion, House
+
+UNWRITTEN = "–"
+"""Where there is no number."""
+
+
+@dataclass(frozen=True)
+class HouseCell:
+    """A score, the author's beside it ("" where he has none), and the difference ("" where there is none)."""
+
+    score: str
+    author: str
+    difference: str
+
+
+@dataclass(frozen=True)
+class HouseRow:
+    """A row of the table: its name, its weight, whether it is a judgement and no simulation, a cell a variable."""
+
+    words: str
+    weight: str
+    judgement: bool
+    cells: tuple[HouseCell, ...]
+
+
+def house_rows(house: House) -> tuple[HouseRow, ...]:
+    """Word the rows of a house."""
+    count = len(house.variables)
+    return tuple(HouseRow(row.words, row.importance, row.quantity is None, _cells(row, count)) for row in house.rows)
 
 
 def house_sentence(house: House, words: Mapping[str, str]) -> str:
@@ -45,3 +74,17 @@ def _author_sentence(house: House, words: Mapping[str, str]) -> str:
         return "His numbers, by the same rule, choose the same variables."
     listed = ", ".join(f"{words[name]} ({his[name]:.2f})" for name in other)
     return f"By the same rule his numbers judge otherwise of {listed}."
+
+
+def _cells(row: Criterion, count: int) -> tuple[HouseCell, ...]:
+    cells = []
+    for mine, his in zip(row.scores or (None,) * count, row.author or (None,) * count, strict=True):
+        gap = 0 if mine is None or his is None else mine - his
+        cells.append(
+            HouseCell(
+                UNWRITTEN if mine is None else str(mine),
+                "" if his is None else str(his),
+                f"{gap:+d}".replace("-", "−") if gap else "",
+            )
+        )
+    return tuple(cells)

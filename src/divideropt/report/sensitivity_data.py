@@ -88,8 +88,9 @@ def first_of(indices: pd.DataFrame, quantity: str, kind: str) -> pd.DataFrame:
     """The numbers of a table of the whole sample under the treatment to look at first, indexed by variable."""
     chosen = (indices["quantity"] == quantity) & (indices["kind"] == kind)
     chosen &= indices["samples"] == indices["samples"].max()
-    found = indices[chosen & indices["treatment"].isin([str(Treatment.ALL), str(Treatment.WORKING)])]
-    return found.set_index("variable")
+    chosen &= indices["treatment"].isin([str(Treatment.ALL), str(Treatment.WORKING)])
+    found: pd.DataFrame = indices[chosen].set_index("variable")
+    return found
 
 
 def method_of(campaign: Campaign) -> str:

@@ -1,17 +1,16 @@
 """The page of a sensitivity study, and the study's text for a terminal."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from divideropt.analysis.house_of_quality import STRONGEST, WORTHWHILE, Criterion
+from divideropt.analysis.house_of_quality import STRONGEST, WORTHWHILE
 from divideropt.analysis.sobol import LEAST_BLOCKS
 from divideropt.analysis.treatments import MEANINGS, Treatment
 from divideropt.campaign.load import stored_campaign
 from divideropt.report.display import number
 from divideropt.report.document import drawn, render, save
-from divideropt.report.house_words import house_sentence
+from divideropt.report.house_words import UNWRITTEN, house_rows, house_sentence
 from divideropt.report.sensitivity_data import StudyData, method_of, quantity_words, read_study, write_indices
 from divideropt.report.sensitivity_figures import (
     convergence,
@@ -21,19 +20,8 @@ from divideropt.report.sensitivity_figures import (
     interactions,
     variable_labels,
 )
+from divideropt.report.sweeps_page import write_sweeps
 from divideropt.store import Store
-
-UNWRITTEN = "–"
-"""Where there is no number."""
-
-
-@dataclass(frozen=True)
-class HouseCell:
-    """A score, the author's beside it ("" where he has none), and the difference ("" where there is none)."""
-
-    score: str
-    author: str
-    difference: str
 
 
 def write_study(store: Store, out: Path | None = None, data: StudyData | None = None) -> Path:
@@ -54,8 +42,6 @@ def write_study(store: Store, out: Path | None = None, data: StudyData | None = 
         DiskError: The disk refused.
     """
     if method_of(stored_campaign(store)) == "oat":
-        from divideropt.report.sweeps_page import write_sweeps  # noqa: PLC0415 (only where it is asked for)
-
         return write_sweeps(store, out)
     data = data or read_study(store)
     write_indices(data, store)
@@ -73,7 +59,7 @@ def render_study(data: StudyData) -> str:
         figures={figure["id"]: figure for figure in figures},
         treatments=_treatments(data),
         meanings=[(str(treatment), words) for treatment, words in MEANINGS.items()],
-        house=house_rows(data),
+        house=() if data.house is None else house_rows(data.house),
         sentence=study_sentence(data),
         worthwhile=WORTHWHILE,
         strongest=STRONGEST,
@@ -81,6 +67,7 @@ def render_study(data: StudyData) -> str:
         number=number,
         quantity_words=lambda name: quantity_words(name, data.problem),
         labels=dict(variable_labels(data)),
+        headings=[(axis.words, axis.symbol) for axis, _, _ in data.variables],
     )
 
 
@@ -100,10 +87,10 @@ def study_text(data: StudyData) -> str:
             lines.append(f"  {name:<{width}}  {'  '.join(cells)}")
     if data.house is not None:
         lines.append("House of Quality, 0 to 4; in brackets the author's:")
-        for row, (words, weight, cells) in zip(data.house.rows, house_rows(data), strict=True):
-            shown = "  ".join(f"{c.score}({c.author})" if c.author else c.score for c in cells)
-            judged = ", a judgement" if row.quantity is None else ""
-            lines.append(f"  {words + judged:<22} {weight or '-':>3}  {shown}")
+        for row in house_rows(data.house):
+            shown = "  ".join(f"{c.score}({c.author})" if c.author else c.score for c in row.cells)
+            words = row.words + (", a judgement" if row.judgement else "")
+            lines.append(f"  {words:<22} {row.weight or '-':>3}  {shown}")
     lines.append(study_sentence(data))
     return "\n".join(line for line in lines if line)
 
@@ -112,26 +99,6 @@ def study_sentence(data: StudyData) -> str:
     """What follows from the study for the choice of variables; "" of a Morris study."""
     words = {axis.name: axis.words for axis, _, _ in data.variables}
     return "" if data.house is None else house_sentence(data.house, words)
-
-
-def house_rows(data: StudyData) -> list[tuple[str, str, list[HouseCell]]]:
-    """The House of Quality as words, weight and a cell a variable."""
-    return [] if data.house is None else [(row.words, row.importance, _cells(row, data)) for row in data.house.rows]
-
-
-def _cells(row: Criterion, data: StudyData) -> list[HouseCell]:
-    count = len(data.variables)
-    cells = []
-    for mine, his in zip(row.scores or (None,) * count, row.author or (None,) * count, strict=True):
-        gap = 0 if mine is None or his is None else mine - his
-        cells.append(
-            HouseCell(
-                UNWRITTEN if mine is None else str(mine),
-                "" if his is None else str(his),
-                f"{gap:+d}".replace("-", "−") if gap else "",
-            )
-        )
-    return cells
 
 
 def _figures(data: StudyData) -> list[dict[str, Any]]:
