@@ -14,6 +14,12 @@ from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, r
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
 from divideropt.campaign.termination import termination_rules
+from divideropt.campaign.uncertainty import (
+    StatisticWord,
+    UncertaintyConfig,
+    check_uncertainty,
+    uncertainty_rules,
+)
 from divideropt.campaign.worst_case import worst_case_rules
 from divideropt.models import Parameter, Quantity
 
@@ -49,6 +55,8 @@ class ObjectiveConfig(Section):
     """w of (3.24)."""
     worst_of: tuple[str, ...] = ()
     """Scenarios over which the quantity's largest value counts, by name; `scenario` is the model's own."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` counts; without one the design as it is."""
 
 
 class ConstraintConfig(Section):
@@ -60,6 +68,8 @@ class ConstraintConfig(Section):
     """Upper bound, in the quantity's unit."""
     worst_of: tuple[str, ...] = ()
     """Scenarios in all of which the bounds are kept, by name; `scenario` is the model's own."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` keeps them; without one the design as it is."""
 
     @model_validator(mode="after")
     def _bounds(self) -> Self:
@@ -131,9 +141,12 @@ FEW_POINTS = 200
 """Of which neighbours are simulated where a campaign does not say: some seconds by the valve's compiled solver."""
 
 
-def _affordable(model: object) -> OptimalityConfig:
-    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes."""
-    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock"
+def _affordable(model: object, uncertainty: object) -> OptimalityConfig:
+    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes.
+
+    Under uncertainty each design is simulated as often as there are samples.
+    """
+    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock" and uncertainty is None
     return OptimalityConfig(points=FEW_POINTS if quick else 0)
 
 
@@ -235,12 +248,14 @@ class Campaign(Section):
         Mapping[str, float], PlainValidator(_reference), WithJsonSchema(schemas.reference_point())
     ] = Field(default_factory=dict)
     """Where the hypervolume is measured from: nothing, or a value for every objective."""
+    uncertainty: Annotated[UncertaintyConfig | None, AfterValidator(check_uncertainty)] = None
+    """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
-    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
-    """How near to stationary front points are; 200 points by the valve's compiled solver, by others none."""
+    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
+    """How near to stationary front points are; 200 points by the valve's compiled solver, none where that is dear."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 
@@ -253,6 +268,7 @@ class Campaign(Section):
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
         yield from worst_case_rules(raw)
+        yield from uncertainty_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
