@@ -13,6 +13,7 @@ from divideropt.campaign.divider import divider_tables
 from divideropt.campaign.fields import Tables
 from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import MOST_MISTAKES, Document, KeyPath, read_document, read_text
+from divideropt.campaign.uncertainty import with_failures
 from divideropt.errors import FileMistakes, Mistake, StoreError, UsageError
 from divideropt.store import Store
 
@@ -66,7 +67,7 @@ def campaign_of(document: Document) -> Campaign:
     """Make a campaign of what has been read; raises as `load_campaign`."""
     found = list(document.mistakes)
     try:
-        tables = _tables(document)
+        tables = with_failures(_tables(document), _is_uncertain(document.data))
     except UsageError as error:
         tables = Tables()
         found += _placed(document, ("model", "kind"), str(error))
@@ -101,6 +102,10 @@ def _tables(document: Document) -> Tables:
         return Tables()  # nothing is imported on the word of a file that is refused anyway
     made = load_plugin(model["kind"], options)
     return Tables(made.parameters, made.quantities)
+
+
+def _is_uncertain(data: object) -> bool:
+    return isinstance(data, Mapping) and data.get("uncertainty") is not None
 
 
 def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
