@@ -19,6 +19,7 @@ from divideropt.analysis.indicators import (
 from divideropt.analysis.optimality import Optimality, optimality
 from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
 from divideropt.analysis.scale import Scale, region
+from divideropt.analysis.spread import representatives, spread
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
@@ -72,9 +73,11 @@ __all__ = [
     "reached",
     "region",
     "repeatable",
+    "representatives",
     "residuals",
     "scales_of",
     "several_test",
+    "spread",
     "summarise",
     "tally",
     "worst_surface",

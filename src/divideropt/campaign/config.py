@@ -10,6 +10,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.nominal import nominal_rules
 from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
@@ -237,6 +238,8 @@ class Campaign(Section):
     """Where the hypervolume is measured from: nothing, or a value for every objective."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    nominal: Annotated[bool, Field(strict=True)] = False
+    """Whether a companion without scenarios and uncertainty runs too, to say what these cost."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
     optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
@@ -253,6 +256,7 @@ class Campaign(Section):
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
         yield from worst_case_rules(raw)
+        yield from nominal_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
