@@ -18,6 +18,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.nominal import nominal_rules
 from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.ranges import read_range
@@ -259,6 +260,8 @@ class Campaign(Section):
     """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    nominal: Annotated[bool, Field(strict=True)] = False
+    """Whether a companion without scenarios and uncertainty runs too, to say what these cost."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
     optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
@@ -280,6 +283,7 @@ class Campaign(Section):
         yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
         yield from uncertainty_rules(raw)
+        yield from nominal_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
