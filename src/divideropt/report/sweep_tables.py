@@ -15,7 +15,7 @@ SUMMARY_DIGITS = 3
 """Significant digits in the table on top, which has many columns."""
 
 PROPORTIONAL = 1e-6
-"""Effects that differ by less, relatively, are of proportional quantities, such as a volume and its share."""
+"""Effects that differ by less, relatively, are of quantities in proportion, such as a volume and its share."""
 
 MOST_STRETCHES = 3
 """Stretches of failed designs that are named one by one."""

@@ -21,12 +21,25 @@ def _even(levels: int) -> int:
     return levels
 
 
+TOGETHER = 10
+"""Trajectories in a batch: enough for several processes."""
+
+
+def _in_tens(trajectories: int) -> int:
+    if trajectories % TOGETHER:
+        above = trajectories + TOGETHER - trajectories % TOGETHER
+        raise ValueError(
+            f"{trajectories} is not a multiple of {TOGETHER}, as many as are simulated together; write {above}"
+        )
+    return trajectories
+
+
 @dataclass(frozen=True, config=STRICT)
 class Morris:
     """Options of a Morris study."""
 
-    trajectories: Annotated[int, Field(ge=2, le=100_000)] = 100
-    """Each has one design more than there are variables."""
+    trajectories: Annotated[int, Field(ge=10, le=100_000), AfterValidator(_in_tens)] = 100
+    """A multiple of 10; each has one design more than there are variables."""
     levels: Annotated[int, Field(ge=4, le=100), AfterValidator(_even)] = 8
     """Values that a variable takes, evenly over its range."""
 
@@ -51,7 +64,3 @@ class Morris:
         box = {"num_vars": len(space), "names": list(space.names), "bounds": [[0.0, 1.0]] * len(space)}
         unit: FloatArray = morris.sample(box, self.trajectories, num_levels=self.levels, seed=seed)
         return space.clip(space.lower + (space.upper - space.lower) * unit)
-
-
-TOGETHER = 10
-"""Trajectories in a batch."""

@@ -14,8 +14,8 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace, Problem
 from divideropt.strategies.base import STRICT, Evaluate
 
-BATCH = 512
-"""Designs in a batch, about: enough for two processes, and little to lose."""
+BATCH = 64
+"""Blocks in a batch: enough for several processes, and little to lose."""
 
 
 def _power_of_two(samples: int) -> int:
@@ -50,12 +50,13 @@ class Sobol:
         return None
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
-        """Ask for block after block; see `Strategy.run`."""
+        """Ask for block after block, in batches that end at every power of two; see `Strategy.run`."""
         designs = self._sample(problem.space, seed)
-        size = self.block(len(problem.space))
-        step = max(1, BATCH // size) * size
-        for begin in range(0, len(designs), step):
-            evaluate(designs[begin : begin + step])
+        size, begin = self.block(len(problem.space)), 0
+        while begin < self.samples:
+            count = min(max(begin, 2), BATCH)
+            evaluate(designs[begin * size : (begin + count) * size])
+            begin += count
 
     def _sample(self, space: DesignSpace, seed: int) -> FloatArray:
         from SALib.sample import sobol  # noqa: PLC0415 (brings matplotlib with it)
