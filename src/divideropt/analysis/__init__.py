@@ -19,6 +19,7 @@ from divideropt.analysis.indicators import (
 from divideropt.analysis.optimality import Optimality, optimality
 from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
 from divideropt.analysis.scale import Scale, region
+from divideropt.analysis.spread import representatives, spread
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
@@ -78,9 +79,11 @@ __all__ = [
     "reached",
     "region",
     "repeatable",
+    "representatives",
     "residuals",
     "scales_of",
     "several_test",
+    "spread",
     "summarise",
     "sweeps_of",
     "tally",

@@ -18,12 +18,19 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.nominal import nominal_rules
 from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.sections import Section, mistake, show, together
 from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
+from divideropt.campaign.uncertainty import (
+    StatisticWord,
+    UncertaintyConfig,
+    check_uncertainty,
+    uncertainty_rules,
+)
 from divideropt.campaign.worst_case import named_scenarios, read_worst_of, worst_case_rules
 from divideropt.models import Quantity
 
@@ -61,6 +68,8 @@ class ObjectiveConfig(Section):
     """w of (3.24)."""
     worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
     """Scenarios over which the quantity's largest value counts; `scenario` is the model's own, `all` every one."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` counts; without one the design as it is."""
 
 
 class ConstraintConfig(Section):
@@ -72,6 +81,8 @@ class ConstraintConfig(Section):
     """Upper bound, in the quantity's unit."""
     worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
     """Scenarios in all of which the bounds are kept; `scenario` is the model's own, `all` every one."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` keeps them; without one the design as it is."""
 
     @model_validator(mode="after")
     def _bounds(self) -> Self:
@@ -143,9 +154,12 @@ FEW_POINTS = 200
 """Of which neighbours are simulated where a campaign does not say: some seconds by the valve's compiled solver."""
 
 
-def _affordable(model: object) -> OptimalityConfig:
-    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes."""
-    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock"
+def _affordable(model: object, uncertainty: object) -> OptimalityConfig:
+    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes.
+
+    Under uncertainty each design is simulated as often as there are samples.
+    """
+    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock" and uncertainty is None
     return OptimalityConfig(points=FEW_POINTS if quick else 0)
 
 
@@ -242,12 +256,16 @@ class Campaign(Section):
         Mapping[str, float], PlainValidator(_reference), WithJsonSchema(schemas.reference_point())
     ] = Field(default_factory=dict)
     """Where the hypervolume is measured from: nothing, or a value for every objective."""
+    uncertainty: Annotated[UncertaintyConfig | None, AfterValidator(check_uncertainty)] = None
+    """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    nominal: Annotated[bool, Field(strict=True)] = False
+    """Whether a companion without scenarios and uncertainty runs too, to say what these cost."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
-    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
-    """How near to stationary front points are; 200 points by the valve's compiled solver, by others none."""
+    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
+    """How near to stationary front points are; 200 points by the valve's compiled solver, none where that is dear."""
     sensitivity: SensitivityConfig = SensitivityConfig()
     """What `divideropt sensitivity` varies, and how it samples that."""
     parallel: ParallelConfig = ParallelConfig()
@@ -264,6 +282,8 @@ class Campaign(Section):
                 yield mistake(("variables", name), sentence, at_key=True)
         yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
+        yield from uncertainty_rules(raw)
+        yield from nominal_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():

@@ -22,7 +22,7 @@ from divideropt.store import Store, TableSchema
 BUDGETS = ("generations", "evaluations", "trajectories", "samples")
 """Options that may grow."""
 
-PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point")
+PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point", "uncertainty")
 """Sections that say what is optimised, and how well a front is."""
 
 _SIDES = ("the store", "the campaign")
@@ -85,7 +85,7 @@ def differences(
     """
     before, after = _as_written(first), _as_written(second)
     for section in sections:
-        yield from _compare(section, before[section], after[section], sides)
+        yield from _compare(section, before.get(section), after.get(section), sides)
     for section in ("variables", "objectives", "constraints"):
         old, new = list(before[section]), list(after[section])
         if old != new and sorted(old) == sorted(new):

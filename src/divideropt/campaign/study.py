@@ -14,6 +14,7 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.fields import measure_of
 from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.nominal import nominal_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
@@ -64,16 +65,19 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
         asked: How.
 
     Returns:
-        The same model, objectives and constraints; its variables are the parameters studied, its only strategy the
-        sampling.
+        The same model, objectives and constraints, of a campaign with uncertainty the nominal ones; its variables
+        are the parameters studied, its only strategy the sampling.
 
     Raises:
         UsageError: A parameter or a count is wrong.
     """
     config = campaign.sensitivity
     options = _options(config, asked)
-    study = campaign.model_copy(
+    certain = campaign if campaign.uncertainty is None else nominal_campaign(campaign)
+    study = certain.model_copy(
         update={
+            "name": campaign.name,
+            "nominal": False,
             "variables": _ranges(campaign, asked),
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
             "sensitivity": SensitivityConfig(),
@@ -132,8 +136,11 @@ def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float
 
 
 def _usual(campaign: Campaign, method: str) -> dict[str, tuple[float, float]]:
-    thesis = method == "oat" and isinstance(campaign.model, DividerConfig)
-    return dict(THESIS_RANGES if thesis else campaign.variables)
+    model = campaign.model
+    if method != "oat" or not isinstance(model, DividerConfig):
+        return dict(campaign.variables)
+    theirs = {name for scenario in model.scenarios.values() for name in scenario.set}
+    return {name: ends for name, ends in THESIS_RANGES.items() if name not in theirs}
 
 
 def _asked_range(

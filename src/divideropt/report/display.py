@@ -9,6 +9,8 @@ from types import MappingProxyType
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.statistic import parted
+from divideropt.models.statistic import words_of as statistic_words
 
 _UNITS: Mapping[str, tuple[tuple[float, str, float], ...]] = MappingProxyType(
     {
@@ -104,7 +106,17 @@ def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
     symbol = re.sub(r",?\s*\(\d+\.\d+\)", "", entry.symbol).strip()
     if isinstance(entry, Quantity) and entry.signed and symbol:
         symbol = f"|{symbol}|"
-    return Axis(entry.name, entry.name.replace("_", " "), symbol, entry.description, shown_as(entry.unit, values))
+    symbol = symbol if symbol.strip("|") else ""  # of a magnitude that has none
+    return Axis(entry.name, _words_of(entry.name), symbol, entry.description, shown_as(entry.unit, values))
+
+
+def _words_of(name: str) -> str:
+    """Word a column's name; `p95.settling_time` is the `95th percentile of settling time`."""
+    statistic = parted(name)
+    if statistic is None:
+        return name.replace("_", " ")
+    kind, quantity = statistic
+    return f"{statistic_words(kind)} of {_words_of(quantity)}"
 
 
 def shown_as(unit: str, values: Iterable[float]) -> Shown:

@@ -25,7 +25,7 @@ MARGIN = 0.05
 """Above and below the flows in the zoom, in parts of their range."""
 
 MOST_DRAWN = 400
-"""Designs of a sweep that are drawn, evenly spread; failed ones are all marked."""
+"""Designs of a sweep that a line has, and crosses that mark failed ones, evenly spread; a band marks all of these."""
 
 MOST_NUMBERS = 300_000
 """Numbers of all quantities over all parameters in a page [a number takes ten bytes]."""
@@ -104,7 +104,7 @@ def panel_numbers(data: SweepsData) -> Mapping[str, Mapping[str, Any]]:
         floor = _floor(np.concatenate(lines))
         traces: list[list[float | None]] = []
         for part, line in zip(data.parts, lines, strict=True):
-            traces += [_numbers(line), _numbers(np.full(part.sweep.failed, floor))]
+            traces += [_numbers(line), _numbers(np.full(len(_failed(part)), floor))]
         found[name] = {"label": plain(axis.label), "y": traces}
     return found
 
@@ -113,12 +113,12 @@ def _responses_figure(responses: Sequence[ValueResponse], begin: float, end: flo
     figure = go.Figure(layout=layout(height=380, margin={"l": 62, "r": 12, "t": 12, "b": 52}))
     for i, response in enumerate(responses):
         curve = response.curve
-        times = np.array([] if curve is None else curve.times)
+        if curve is None:
+            continue
+        times = np.array(curve.times)
         kept = _around(times, begin, end)
-        outcome = "" if response.verdict.ok else f" ({response.verdict.outcome})"
-        name = plain(f"{curve.name if curve else ''}{outcome}")
-        for number in (0, 1) if curve is not None else ():
-            assert curve is not None
+        name = plain(curve.name if response.verdict.ok else f"{curve.name} ({response.verdict.outcome})")
+        for number in (0, 1):
             figure.add_scatter(
                 x=times[kept],
                 y=np.array(curve.flows[number])[kept],
@@ -141,14 +141,17 @@ _LEGEND = {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor"
 def _around(times: FloatArray, begin: float, end: float) -> NDArray[np.bool_]:
     """Which points of a line to draw: those in a window, and its neighbours on either side."""
     inside = (times >= begin) & (times <= end)
-    return inside | np.roll(inside, 1) | np.roll(inside, -1) if inside.any() else inside
+    kept = inside.copy()
+    kept[1:] |= inside[:-1]
+    kept[:-1] |= inside[1:]
+    return kept
 
 
 def _over(part: SweepFacts, lines: Sequence[tuple[str, FloatArray]], title: str, unit: str) -> go.Figure:
     """Draw lines over a parameter."""
     figure = go.Figure(layout=layout(height=320, margin={"l": 62, "r": 12, "t": 12, "b": 52}))
     rows = _thinned(len(part.sweep.values), MOST_DRAWN)
-    failed = np.flatnonzero(~part.sweep.ok)
+    failed = _failed(part)
     for i, (words, values) in enumerate(lines):
         trace = _line(_shown(part, rows), _numbers(values[rows]), words, i)
         hover = f"{plain(words)} %{{y:.4~g}} {plain(unit)}<br>{plain(_short(part.axis))} %{{x:.4~g}}<extra></extra>"
@@ -217,7 +220,12 @@ def _marks(part: SweepFacts, xref: str, yref: str) -> list[dict[str, Any]]:
 def _drawn(data: SweepsData, part: SweepFacts) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows of a sweep that the panels draw as a line, and those that they mark as failed."""
     share = MOST_NUMBERS // max(1, len(data.parts) * len(data.quantities))
-    return _thinned(len(part.sweep.values), min(MOST_DRAWN, max(share, 2))), np.flatnonzero(~part.sweep.ok)
+    return _thinned(len(part.sweep.values), min(MOST_DRAWN, max(share, 2))), _failed(part)
+
+
+def _failed(part: SweepFacts) -> NDArray[np.intp]:
+    rows = np.flatnonzero(~part.sweep.ok)
+    return rows[_thinned(len(rows), MOST_DRAWN)]
 
 
 def _thinned(count: int, most: int) -> NDArray[np.intp]:

@@ -150,8 +150,8 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     """Gather the worst of each design, NaN where one is; a signed quantity counts by its magnitude, and stays signed.
 
-    Of scenarios that are as good as equal in magnitude the first gives the sign: mirrored ones, as of a step in either
-    load, are equal but for what the solver rounds, and their sign would be a matter of chance.
+    Of scenarios that are as good as equal in magnitude the first gives the sign: mirrored ones, as of a step in
+    either load, are equal but for what the solver rounds, and their sign would be a matter of chance.
 
     Args:
         over: Shape (scenarios, n).

@@ -247,7 +247,7 @@
       button.addEventListener("click", () => sort(table, button.closest("th")));
     }
     table.addEventListener("keydown", onKey);
-    for (const rows of document.querySelectorAll("#front-table tbody, #best tbody, #choosing-table tbody")) {
+    for (const rows of document.querySelectorAll("#front-table tbody, #best tbody, #choosing-table tbody, #cost-bests tbody")) {
       rows.addEventListener("click", (event) => {
         const row = event.target.closest("tr[data-id]");
         if (row) select(row.dataset.id);
