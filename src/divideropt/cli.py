@@ -228,7 +228,14 @@ def sensitivity(
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
     kept = study_store(Store(folder), study or method)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
+    from divideropt.report import read_study, study_text, write_study
+
+    data = None if method == "oat" else read_study(kept)
+    page = write_study(kept, None, data)
+    if data is not None:
+        click.echo(study_text(data))
     _say(f"study:  {kept.folder}")
+    _say(f"page:   {page}")
 
 
 @commands.command()
