@@ -218,6 +218,7 @@ def sensitivity(
     """  # noqa: D301 (\b is click's)
     asked = _load(campaign)
     from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.report import read_study, study_text, write_study
     from divideropt.store import Store
 
     wanted = study_of(asked, Asked(method, parameters, samples))
@@ -228,7 +229,10 @@ def sensitivity(
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
     kept = study_store(Store(folder), study or method)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
-    _say(f"study:  {kept.folder}")
+    found = None if method == "oat" else read_study(kept)
+    if found is not None:
+        _write_data(study_text(found) + "\n")
+    _say(f"report: {write_study(kept, data=found)}")
 
 
 @commands.command()
