@@ -150,10 +150,17 @@ def test_the_text_has_the_numbers_and_the_house(valve):
     data = read_study(valve)
     text = study_text(data)
     assert f"{data.failures.total} of 768 designs failed" in text
-    found = data.first("source_pressure", "ST").loc["centred_opening", "value"]
-    assert f"{found:.3f} ± " in text
+    found = data.first("source_pressure", "ST").loc["centred_opening"]
+    assert f"{found['value']:.2f} ± {found['high'] - found['value']:.2f}" in text
     assert "House of Quality" in text
     assert text.splitlines()[-1].startswith("Worth optimising: ")
+
+
+def test_effects_are_told_in_the_quantitys_unit(tmp_path):
+    store = studied(DIVIDER.read_text(), tmp_path / "study", "morris", 10)
+    text = study_text(read_study(store))
+    assert "magnitude of dynamic error [mL]: mu_star and sigma" in text
+    assert "source pressure [MPa]" in text or "source pressure [GPa]" in text
 
 
 def test_the_campaigns_report_shows_its_studies(opened: Callable[..., Opened], tmp_path):

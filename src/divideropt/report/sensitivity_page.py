@@ -1,5 +1,6 @@
 """The page of a sensitivity study, and the study's text for a terminal."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -8,12 +9,13 @@ from divideropt.analysis.house_of_quality import STRONGEST, WORTHWHILE
 from divideropt.analysis.sobol import LEAST_BLOCKS
 from divideropt.analysis.treatments import MEANINGS, Treatment
 from divideropt.campaign.load import stored_campaign
-from divideropt.report.display import number
+from divideropt.report.display import Shown, number
 from divideropt.report.document import drawn, render, save
 from divideropt.report.house_words import UNWRITTEN, house_rows, house_sentence
 from divideropt.report.sensitivity_data import StudyData, method_of, quantity_words, read_study, write_indices
 from divideropt.report.sensitivity_figures import (
     convergence,
+    effect_axis,
     effects_figure,
     failures_figure,
     index_bars,
@@ -81,16 +83,18 @@ def study_text(data: StudyData) -> str:
     for quantity in data.objectives:
         kinds = ("S1", "ST") if data.method == "sobol" else ("mu_star", "sigma")
         tables = [data.first(quantity, kind) for kind in kinds]
-        lines.append(f"{quantity_words(quantity, data.problem)}: {' and '.join(kinds)}, 95 % intervals")
+        shown = _shown(data, quantity, tables[0])
+        unit = f" [{shown.unit}]" if shown.unit else ""
+        lines.append(f"{quantity_words(quantity, data.problem)}{unit}: {' and '.join(kinds)}, 95 % intervals")
         for name in names:
-            cells = [_interval(table, name) for table in tables]
+            cells = [_interval(table, name, shown.scale) for table in tables]
             lines.append(f"  {name:<{width}}  {'  '.join(cells)}")
     if data.house is not None:
         lines.append("House of Quality, 0 to 4; in brackets the author's:")
         for row in house_rows(data.house):
-            shown = "  ".join(f"{c.score}({c.author})" if c.author else c.score for c in row.cells)
+            cells = [f"{c.score}({c.author})" if c.author else c.score for c in row.cells]
             words = row.words + (", a judgement" if row.judgement else "")
-            lines.append(f"  {words:<22} {row.weight or '-':>3}  {shown}")
+            lines.append(f"  {words:<22} {row.weight or '-':>3}  {'  '.join(cells)}")
     lines.append(study_sentence(data))
     return "\n".join(line for line in lines if line)
 
@@ -132,25 +136,31 @@ def _treatments(data: StudyData) -> list[dict[str, Any]]:
     found = []
     for quantity in dict.fromkeys(asked):
         mine = table[(table["quantity"] == quantity) & (table["kind"] == kind)]
+        shown = _shown(data, quantity, mine)
         rows = []
         for treatment in Treatment:
             chosen = mine[mine["treatment"] == str(treatment)].set_index("variable")
             if not chosen.empty:
-                cells = [_interval(chosen, axis.name) for axis, _, _ in data.variables]
+                cells = [_interval(chosen, axis.name, shown.scale) for axis, _, _ in data.variables]
                 used = f"{100 * chosen['used'].min():.3g} %"
                 rows.append({"treatment": str(treatment), "cells": cells, "used": used})
         if rows:
-            found.append({"words": quantity_words(quantity, data.problem), "rows": rows})
+            unit = f" [{shown.unit}]" if shown.unit else ""
+            found.append({"words": quantity_words(quantity, data.problem) + unit, "rows": rows})
     return found
 
 
-def _interval(table: Any, name: str) -> str:
+def _shown(data: StudyData, quantity: str, table: Any) -> Shown:
+    """The unit of a study's numbers: an index has none, an effect the quantity's."""
+    return Shown("", 1.0) if data.method == "sobol" else effect_axis(data, quantity, table["value"].tolist()).shown
+
+
+def _interval(table: Any, name: str, scale: float) -> str:
     if name not in table.index:
         return UNWRITTEN
-    row = table.loc[name]
-    half = row["high"] - row["value"]
+    value = table.loc[name, "value"] * scale
+    half = (table.loc[name, "high"] - table.loc[name, "value"]) * scale
     if half != half:  # noqa: PLR0124 (NaN)
-        return number(row["value"], 3)
-    small = max(abs(row["value"]), half) < 10 and half > 5e-4
-    text = f"{row['value']:.3f} ± {half:.3f}" if small else f"{number(row['value'], 3)} ± {number(half, 2)}"
-    return text.replace("-", "−")
+        return number(value, 3)
+    places = max(0, 1 - math.floor(math.log10(half))) if half > 0.0 else 3  # two digits of the half width
+    return f"{value:.{min(places, 6)}f} ± {half:.{min(places, 6)}f}".replace("-", "−")
