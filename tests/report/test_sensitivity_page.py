@@ -135,10 +135,6 @@ def test_the_house_stands_beside_the_authors(opened: Callable[..., Opened], valv
     assert marked == sum(d != 0 for d in data.house.differences) > 0
 
 
-def page_rows(data):
-    return house_rows(data.house)
-
-
 def test_a_morris_study_is_drawn(opened: Callable[..., Opened], tmp_path):
     store = studied(FAILING, tmp_path / "study", "morris", 40)
     write_study(store)

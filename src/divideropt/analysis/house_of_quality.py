@@ -141,12 +141,11 @@ def _thesis_row(row: ThesisRow, totals: pd.DataFrame, problem: Problem) -> Crite
 
 
 def _asked(quantities: Sequence[str], problem: Problem) -> str:
-    """The one of these, or its worst over scenarios, that is an objective, else a constraint, else the first."""
+    """The one of these, or what is gathered of it, that is an objective, else a constraint, else the first."""
     asked = [o.quantity.name for o in problem.objectives] + [c.quantity.name for c in problem.constraints]
-    offered = [form for name in quantities for form in (name, f"worst.{name}", f"least.{name}")]
+    found = [given for name in quantities for given in asked if given == name or given.endswith(f".{name}")]
     objectives = asked[: len(problem.objectives)]
-    among = [name for name in offered if name in objectives] or [name for name in offered if name in asked]
-    return among[0] if among else quantities[0]
+    return next((name for name in found if name in objectives), found[0] if found else quantities[0])
 
 
 def _cost(space: DesignSpace) -> tuple[float, ...] | None:
