@@ -190,6 +190,7 @@ def compare(stores: tuple[Path, ...], evaluations: int | None, as_json: bool, ou
 @click.option(
     "--samples", type=click.IntRange(2), help="Points of a sweep, trajectories, or blocks of a Sobol' study."
 )
+@click.option("--no-second-order", "alone", is_flag=True, help="Sobol: leave out pairs, for nearly half the designs.")
 @click.option("--study", help="Name of the study's folder; the method where not given.")
 @click.option("--store", type=_FILE, help="Folder of the campaign's results; results/NAME where not given.")
 @click.option("--workers", type=click.IntRange(1, 256), help="Processes at a time; the campaign's where not given.")
@@ -199,6 +200,7 @@ def sensitivity(
     method: str,
     parameters: tuple[str, ...],
     samples: int | None,
+    alone: bool,
     study: str | None,
     store: Path | None,
     workers: int | None,
@@ -218,17 +220,22 @@ def sensitivity(
     """  # noqa: D301 (\b is click's)
     asked = _load(campaign)
     from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.report import read_study, study_text, write_study
     from divideropt.store import Store
 
-    wanted = study_of(asked, Asked(method, parameters, samples))
+    wanted = study_of(asked, Asked(method, parameters, samples, alone))
     folder = store or Path("results") / asked.name
     given = {"--method": method, "--samples": samples, "--study": study, "--store": store}
     options = [word for key, value in given.items() if value is not None for word in (key, str(value))]
+    options += ["--no-second-order"] if alone else []
     chosen = [word for name in parameters for word in ("--parameter", name)]
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
     kept = study_store(Store(folder), study or method)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
-    _say(f"study:  {kept.folder}")
+    found = None if method == "oat" else read_study(kept)
+    if found is not None:
+        _write_data(study_text(found) + "\n")
+    _say(f"report: {write_study(kept, data=found)}")
 
 
 @commands.command()

@@ -36,11 +36,13 @@ class Asked:
         method: oat, morris or sobol.
         parameters: What is studied, `NAME` or `NAME=LOWER..UPPER`; what the campaign says where empty.
         count: Points, trajectories or samples; None for the campaign's.
+        alone: Whether a Sobol study goes without indices of pairs, whatever the campaign says.
     """
 
     method: str
     parameters: tuple[str, ...] = ()
     count: int | None = None
+    alone: bool = False
 
 
 def study_store(campaign_store: Store, name: str) -> Store:
@@ -115,6 +117,10 @@ def run_study(
 def _options(config: SensitivityConfig, asked: Asked) -> Any:
     """The sampling with its options, its count replaced where another is asked for."""
     options: Any = getattr(config, asked.method)
+    if asked.alone and asked.method != "sobol":
+        raise UsageError(f"--no-second-order is of method sobol, not {asked.method}; leave it away")
+    if asked.alone:
+        options = dataclasses.replace(options, second_order=False)
     if asked.count is None:
         return options
     name = {"oat": "points", "morris": "trajectories", "sobol": "samples"}[asked.method]

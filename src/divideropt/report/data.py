@@ -37,6 +37,7 @@ from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.setting import setting_of
+from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.store import Store, TableSchema
 
 MOST_DRAWN = 4000
@@ -101,6 +102,7 @@ class ReportData:
         cost: The companion's front beside this; None where there is none, or nothing to compare yet.
         notes: Sentences on the state of the store.
         versions: Versions of libraries by name.
+        studies: The campaign's sensitivity studies in short.
     """
 
     name: str
@@ -122,6 +124,7 @@ class ReportData:
     cost: Cost | None
     notes: tuple[str, ...]
     versions: Mapping[str, str]
+    studies: tuple[StudySummary, ...] = ()
 
     @property
     def strategies(self) -> tuple[str, ...]:
@@ -197,6 +200,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         cost,
         _progress(facts, store) + notes + waiting,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+        study_summary(store),
     )
 
 

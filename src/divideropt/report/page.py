@@ -23,6 +23,7 @@ from divideropt.report.figures import (
 from divideropt.report.front import Design
 from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.responses import Responses
+from divideropt.report.sensitivity_figures import index_bars
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
@@ -103,6 +104,10 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:
         found.append(drawn("response", step_figure(data.responses)))
+    for study in data.studies:
+        if study.sobol is not None and study.sobol.objectives:
+            sobol = study.sobol
+            found.append(drawn(f"study-{study.name}", index_bars(sobol.indices, sobol.objectives, sobol.variables)))
     return found
 
 

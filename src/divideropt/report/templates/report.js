@@ -284,6 +284,11 @@
     for (const media of ["(prefers-color-scheme: dark)", "print"]) {
       window.matchMedia(media).addEventListener("change", () => shown.forEach(redraw));
     }
+    for (const details of document.querySelectorAll("details")) {
+      details.addEventListener("toggle", () => { // what was folded away when it was drawn had no width
+        for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
+      });
+    }
     document.documentElement.dataset.drawn = "yes";
   }
 
