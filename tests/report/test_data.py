@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from divideropt.analysis import Kkt, Optimality, Verified
+from divideropt.analysis import Kkt, Optimality, Verified, spread
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity

@@ -17,6 +17,9 @@ from divideropt.problem import AGGREGATES, Problem
 from divideropt.report.display import axis_of
 from divideropt.store import Store
 
+GOALS = "goal_attainment"
+"""In what a design is the best by max λ."""
+
 _SCENARIO = re.compile(r"in scenario (\w+): ", re.ASCII)
 
 
@@ -44,7 +47,7 @@ class Best:
     Attributes:
         nominal: Whether of the companion's front; else of the campaign's.
         design_id: On that front.
-        reasons: In what: `goals`, or objectives by name.
+        reasons: In what: `GOALS`, or objectives by name.
         alone: What the companion's problem makes of it, None where that has not been simulated.
         whole: What the campaign's makes of it, likewise.
     """
@@ -194,7 +197,7 @@ def _bests(of_nominal: bool, alone: _Judged, whole: _Judged) -> Iterator[Best]:
         return
     found: dict[int, tuple[str, ...]] = {}
     if not np.isnan(own.attainment).any():
-        found[int(own.attainment.argmin())] = ("goals",)
+        found[int(own.attainment.argmin())] = (GOALS,)
     for name, row in zip(own.names, own.values.argmin(axis=0).tolist(), strict=True):
         found[row] = (*found.get(row, ()), name)
     for row, reasons in found.items():
@@ -260,11 +263,12 @@ def _volumes(
     alone, whole = reference_of(nominal.campaign), reference_of(own.campaign)
     if alone is None or whole is None:
         return None
-    first, second = (
-        (hypervolume(a.values[a.feasible], alone), hypervolume(w.values[w.feasible], whole))
-        for a, w in fronts.values()
-    )
+    first, second = ((_volume(a, alone), _volume(w, whole)) for a, w in fronts.values())
     return first, second
+
+
+def _volume(judged: _Judged, reference: FloatArray) -> float:
+    return hypervolume(judged.values[judged.feasible], reference)
 
 
 def _placed(of_nominal: bool, whole: _Judged) -> Iterator[Placed]:
