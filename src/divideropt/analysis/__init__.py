@@ -22,6 +22,7 @@ from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.spread import representatives, spread
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
+from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -30,6 +31,8 @@ __all__ = [
     "Comparison",
     "Contender",
     "Convergence",
+    "Effect",
+    "Failures",
     "Goals",
     "Indicator",
     "Kkt",
@@ -39,6 +42,8 @@ __all__ = [
     "Scale",
     "Score",
     "Summary",
+    "Sweep",
+    "Sweeps",
     "Tally",
     "Verified",
     "achievement",
@@ -52,6 +57,7 @@ __all__ = [
     "converged",
     "convergence",
     "effect_size",
+    "effects_of",
     "gaps",
     "holm",
     "hypervolume",
@@ -79,6 +85,7 @@ __all__ = [
     "several_test",
     "spread",
     "summarise",
+    "sweeps_of",
     "tally",
     "worst_surface",
     "worth_verifying",

@@ -1,20 +1,23 @@
 """What made a report's figures, in words: formulation, parameters, scenarios, solver."""
 
+from collections.abc import Mapping
+
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.models.divider import Event, Scenario
 from divideropt.models.divider.scenarios import BASE
 from divideropt.report.display import axis_of
+from divideropt.report.uncertainty import uncertainty_words
 
 
 def setting_of(campaign: Campaign) -> tuple[tuple[str, str], ...]:
     """Word what was simulated, as pairs of a heading and a sentence."""
     model = campaign.model
     if not isinstance(model, DividerConfig):
-        return (("Model", model.kind),)
+        return (("Model", model.kind), *uncertainty_words(campaign))
     solver = model.solver
     scenarios = (
-        ("Scenario" if name == BASE else f"Scenario {name}", _scenario_words(scenario))
+        ("Scenario" if name == BASE else f"Scenario {name}", _scenario_words(scenario) + _set_words(model, name))
         for name, scenario in model.all_scenarios().items()
     )
     loss = "; with the losses at the grooves' ends" if model.groove_loss == "entrance" else ""
@@ -23,6 +26,7 @@ def setting_of(campaign: Campaign) -> tuple[tuple[str, str], ...]:
         ("Formulation", model.formulation + loss),
         ("Parameters", _parameter_words(model)),
         *scenarios,
+        *uncertainty_words(campaign),
         ("Solver", f"{solver.method}, relative tolerance {solver.rtol:g}, at most {solver.max_steps} steps"),
     )
 
@@ -48,9 +52,15 @@ def _event_words(event: Event) -> str:
 
 
 def _parameter_words(model: DividerConfig) -> str:
+    return f"{model.parameters}, with {_values_words(model, model.set)}" if model.set else model.parameters
+
+
+def _set_words(model: DividerConfig, scenario: str) -> str:
+    changes = model.changes().get(scenario)
+    return f"; with {_values_words(model, changes)}" if changes else ""
+
+
+def _values_words(model: DividerConfig, values: Mapping[str, float]) -> str:
     parameters = model.tables().parameters or {}
-    changes = ", ".join(
-        f"{name.replace('_', ' ')} {axis_of(parameters[name], [value]).bound(value)}"
-        for name, value in model.set.items()
-    )
-    return f"{model.parameters}, with {changes}" if changes else model.parameters
+    axes = {name: axis_of(parameters[name], [value]) for name, value in values.items()}
+    return ", ".join(f"{axes[name].words} {axes[name].bound(value)}" for name, value in values.items())

@@ -1,7 +1,7 @@
 """Several scenarios on one design: the quantities of each, and the worst of some of them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,9 @@ from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
 
 BASE = "scenario"
 """Name of the scenario whose quantities have plain names."""
+
+AS_GOOD_AS_EQUAL = 1e-3
+"""Part of a magnitude within which two scenarios are equally bad: some times what the solver's tolerance leaves."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +44,12 @@ class Scenarios:
     Attributes:
         models: The divider under each by name; that of `BASE` first.
         worst: What is to be gathered over them.
+        changes: Parameters that a scenario sets whatever the design says, SI, by its name and theirs.
     """
 
     models: Mapping[str, Divider]
     worst: tuple[Worst, ...] = ()
+    changes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def base(self) -> Divider:
@@ -75,7 +80,7 @@ class Scenarios:
         columns: dict[str, FloatArray] = {}
         verdicts: list[Verdict] = []
         for name, model in self.models.items():
-            values, found = model.evaluate(designs)
+            values, found = model.evaluate(self._under(name, designs))
             columns |= {_prefixed(name, key): values[:, i] for i, key in enumerate(model.quantities)}
             verdicts = (
                 [*found] if name == BASE else [_first(a, b, name) for a, b in zip(verdicts, found, strict=True)]
@@ -84,6 +89,15 @@ class Scenarios:
             over = np.array([columns[_prefixed(name, worst.quantity)] for name in worst.scenarios])
             columns[worst.name] = _worst_of(over, quantities[worst.name].signed, worst.least)
         return np.column_stack([columns[name] for name in quantities]), verdicts
+
+    def _under(self, name: str, designs: FloatArray) -> FloatArray:
+        """Return designs as a scenario has them, shape (n, d)."""
+        changes = self.changes.get(name)
+        if not changes:
+            return designs
+        order, changed = list(self.parameters), designs.copy()
+        changed[:, [order.index(parameter) for parameter in changes]] = list(changes.values())
+        return changed
 
     def on_threads(self, threads: int) -> "Scenarios | None":
         """Return the same model, its batches shared by threads; None where one of the scenarios' cannot be."""
@@ -136,6 +150,9 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     """Gather the worst of each design, NaN where one is; a signed quantity counts by its magnitude, and stays signed.
 
+    Of scenarios that are as good as equal in magnitude the first gives the sign: mirrored ones, as of a step in
+    either load, are equal but for what the solver rounds, and their sign would be a matter of chance.
+
     Args:
         over: Shape (scenarios, n).
         signed: Whether magnitudes are compared.
@@ -147,5 +164,8 @@ def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     size = np.abs(over) if signed else over
     lost = np.isnan(size).any(axis=0)
     size = np.where(lost, 0.0, size)
-    rows = size.argmin(axis=0) if least else size.argmax(axis=0)
-    return np.where(lost, np.nan, np.take_along_axis(over, rows[None], axis=0)[0])
+    worst = size.min(axis=0) if least else size.max(axis=0)
+    if signed:
+        first = (np.abs(size - worst) <= AS_GOOD_AS_EQUAL * worst).argmax(axis=0)
+        worst = np.copysign(worst, np.take_along_axis(over, first[None], axis=0)[0])
+    return np.where(lost, np.nan, worst)
