@@ -108,6 +108,43 @@ def test_the_longest_name_has_a_companion_too():
     assert parse_campaign(dump_campaign(nominal)) == nominal
 
 
+UNCERTAIN = """\
+name: uncertain
+model: {kind: "toy_model:CheckedToy"}
+variables: {x1: [0, 1], x2: [0, 1]}
+objectives:
+  f1: {goal: 0.2, statistic: p95}
+  f2: {goal: 2, weight: 2, statistic: mean}
+  failed_share: {goal: 1 %}
+constraints:
+  spare: {min: 0 m, statistic: p5}
+strategies: {nsga2: {population: 8, generations: 4}}
+uncertainty:
+  samples: 8
+  parameters: {x2: {factor: {uniform: [0.5, 1]}}, x3: {uniform: [0, 1]}}
+nominal: true
+"""
+
+
+def test_the_companion_knows_nothing_of_uncertainty(tmp_path):
+    campaign = parse_campaign(UNCERTAIN)
+    nominal = nominal_campaign(campaign)
+    assert nominal.uncertainty is None
+    assert list(nominal.objectives) == ["f1", "f2"]
+    assert parse_campaign(dump_campaign(nominal)) == nominal
+    assert [c.quantity.name for c in build_problem(nominal).constraints] == ["spare"]
+    _, companion, _ = run(tmp_path, UNCERTAIN)
+    known = kept(tmp_path).set_index("design_id")
+    assert companion.points == len(known)
+    front = pd.read_parquet(tmp_path / "nominal" / "fronts" / "combined.parquet").set_index("design_id")
+    assert known.f1.tolist() == front.f1.tolist()
+    assert "p95.f1" not in front.columns
+    assert kept(tmp_path / "nominal").columns.tolist() == [
+        name for name in front.reset_index().columns if not name.startswith(("verified", "deviation", "kkt"))
+    ]
+    assert "whole campaign" in write_report(Store(tmp_path)).read_text(encoding="utf-8")
+
+
 PLAIN = """\
 name: plain
 model: {kind: divider, scenarios: {light: {load_pressures: [2 MPa, 2 MPa]}}}
@@ -123,13 +160,17 @@ nominal: true
     [
         ("dynamic_error: {goal: 1 mL}", "the companion would be this campaign again; delete `nominal`, or give"),
         ("dynamic_error: {worst_of: []}", "the companion would be this campaign again; delete `nominal`, or give"),
+        (
+            "failed_share: {goal: 1 %}}\nuncertainty: {parameters: {density: {uniform: [800 kg/m^3, 900 kg/m^3]}}",
+            "nothing is left for the companion to minimise; delete `nominal`",
+        ),
         ("light.dynamic_error: {goal: 1 mL}", "nothing is left for the companion to minimise; delete `nominal`"),
     ],
 )
 def test_a_companion_that_would_say_nothing_is_a_mistake(objective, sentence):
     with pytest.raises(FileMistakes) as caught:
-        parse_campaign(PLAIN.replace("OBJECTIVE", objective), "plain.yaml")
-    assert str(caught.value).startswith("plain.yaml:6:1: nominal: ")
+        parse_campaign(text := PLAIN.replace("OBJECTIVE", objective), "plain.yaml")
+    assert str(caught.value).startswith(f"plain.yaml:{text.splitlines().index('nominal: true') + 1}:1: nominal: ")
     assert sentence in str(caught.value)
 
 

@@ -20,7 +20,8 @@ from divideropt.store import Store
 GOALS = "goal_attainment"
 """In what a design is the best by max λ."""
 
-_SCENARIO = re.compile(r"in scenario (\w+): ", re.ASCII)
+_SAMPLES = re.compile(r"in \d+ of \d+ samples: ", re.ASCII)
+_SCENARIO = re.compile(r"\bin scenario (\w+): ", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -230,8 +231,9 @@ def _objections(judged: _Judged, row: int) -> Iterator[tuple[str, str]]:
         return
     verdict = judged.verdicts[row]
     if not verdict.ok:
-        scenario = _SCENARIO.match(verdict.text)
-        yield str(verdict.outcome) + (f" in scenario {scenario[1]}" if scenario else ""), verdict.text
+        samples, scenario = _SAMPLES.match(verdict.text), _SCENARIO.search(verdict.text)
+        where = (" in samples" if samples else "") + (f" in scenario {scenario[1]}" if scenario else "")
+        yield f"{verdict.outcome}{where}", verdict.text
     elif np.isnan(judged.values[row]).any():
         yield "an objective is not defined", verdict.text
     bounds = list(_bounds(judged.problem))
