@@ -126,7 +126,7 @@ def _cost_marks(data: ReportData) -> list[tuple[Mark, str, int]]:
     """The marks of the fronts in the figures of what robustness costs, with words and a count."""
     kinds = [kind_of(place) for place in data.cost.placed] if data.cost else []
     return [
-        (Mark(COLOURS.index(colour), shape.removesuffix("-thin-open")), words, kinds.count(kind))
+        (Mark(COLOURS.index(colour), shape), words, kinds.count(kind))
         for kind, (words, colour, shape) in FRONTS.items()
     ]
 
