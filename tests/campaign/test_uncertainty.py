@@ -2,7 +2,10 @@
 
 import io
 import json
+import re
 import shutil
+import textwrap
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -287,6 +290,35 @@ def test_a_share_without_uncertainty_fits_no_schema():
     assert parse_campaign(json.dumps({**data, "uncertainty": None})) == SURE
 
 
+GUIDE = (Path(__file__).parents[2] / "docs" / "how-to" / "robust.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"((?:^    .*\n)+)", GUIDE, re.MULTILINE)
+EXAMPLES = [textwrap.dedent(block) for block in BLOCKS if "uncertainty:" in block]
+REST = """\
+name: guide
+model: {kind: divider}
+variables: {spool_radius: [6 mm, 16 mm]}
+strategies: {nsga2: {population: 8, generations: 2}}
+"""
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_the_guide_is_right(example):
+    problem = build_problem(parse_campaign(REST + example))
+    assert isinstance(problem.model, Uncertain)
+    SCHEMA.validate(read_text(REST + example).data)
+
+
+def test_the_guides_table_of_distributions_is_right():
+    written = re.findall(r"^\| `(\{.*?\})` \|", GUIDE, re.MULTILINE)
+    assert len(written) == 7
+    numbers = {"low": "2 um", "mode": "3 um", "high": "4 um"}
+    for text in written:
+        known = re.sub("|".join(numbers), lambda m: numbers[m[0]], text)
+        name = "kinematic_viscosity" if "temperature" in text else "rim_thickness"
+        asked = f"uncertainty: {{parameters: {{{name}: {known}}}}}\n"
+        assert set(parse_campaign(BASE + asked).uncertainty.parameters) == {name}
+
+
 TOY = """
 name: toy
 model: {kind: "toy_model:Toy"}
@@ -367,7 +399,7 @@ def test_a_plain_campaign_has_no_column_more(tmp_path):
 def test_a_plugin_may_not_have_the_names_of_statistics():
     text = TOY.replace("toy_model:Toy", "uncertain_toys:Named")
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(__file__.rsplit("/", 1)[0])
+        patch.syspath_prepend(Path(__file__).parent)
         found = mistakes(text)
     assert [m for m in found if "the model has a quantity failed_share" in m[2]]
 
