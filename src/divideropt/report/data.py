@@ -35,6 +35,7 @@ from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.sampling import spread
+from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_table
 from divideropt.report.setting import setting_of
 from divideropt.store import Store, TableSchema
 
@@ -93,6 +94,7 @@ class ReportData:
         choosing: Designs of the front that are worth a look; None without a front.
         leanings: The bounds that the front leans on.
         responses: The step responses; None for a model that has none.
+        scenarios: The best designs under each scenario; None where there is one, or no front.
         notes: Sentences on the state of the store.
         versions: Versions of libraries by name.
     """
@@ -113,6 +115,7 @@ class ReportData:
     choosing: Choosing | None
     leanings: tuple[Leaning, ...]
     responses: Responses | None
+    scenarios: UnderScenarios | None
     notes: tuple[str, ...]
     versions: Mapping[str, str]
 
@@ -185,6 +188,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
+        read_scenarios(problem, table, worth_a_table(front, problem)),
         _progress(facts, store) + notes,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
     )

@@ -21,6 +21,7 @@ from divideropt.report.figures import (
 from divideropt.report.front import Design
 from divideropt.report.palette import marks
 from divideropt.report.responses import Responses
+from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
@@ -70,6 +71,7 @@ def render_report(data: ReportData) -> str:
             "strategies": strategies_table(data),
             "tests": rank_table(data),
         },
+        scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
         number=number,
         verified_words=lambda design: verified_words(design, data),
