@@ -4,7 +4,8 @@ import numpy as np
 
 from claims.criteria import BENT, STRAIGHT, ZERO_ERROR, falls, rises, small, strong, tail, too_few
 from claims.judgement import Answer, Chapter, Judgement, Statement, all_of
-from claims.runs import RANGES, Runs
+from claims.runs import Runs
+from divideropt.models.divider.study import THESIS_RANGES
 
 AXIS = (0.1 / 1.1, 0.12 / 1.1)
 """The longest settling time of Figure 3.21 [s]: its axis ends at 1.1 times that, its last tick (of 0.02) is 0.1."""
@@ -85,7 +86,7 @@ def _rim_largest(runs: Runs) -> Judgement:
 
 def _thinnest(runs: Runs) -> float:
     """Return the magnitude of the error [%] at the thinnest rim of the author's range."""
-    return abs(float(runs.sweep("rim_thickness", RANGES["rim_thickness"][:1]).results["flow_difference"][0]))
+    return abs(float(runs.sweep("rim_thickness", THESIS_RANGES["rim_thickness"][:1]).results["flow_difference"][0]))
 
 
 OPENING = Chapter(

@@ -189,6 +189,54 @@ def compare(stores: tuple[Path, ...], evaluations: int | None, as_json: bool, ou
 
 
 @commands.command()
+@click.argument("campaign", type=_FILE)
+@click.option("--method", type=click.Choice(["oat", "morris", "sobol"]), default="oat", show_default=True)
+@click.option("--parameter", "parameters", multiple=True, metavar="NAME[=LOWER..UPPER]", help="Study this instead.")
+@click.option(
+    "--samples", type=click.IntRange(2), help="Points of a sweep, trajectories, or blocks of a Sobol' study."
+)
+@click.option("--study", help="Name of the study's folder; the method where not given.")
+@click.option("--store", type=_FILE, help="Folder of the campaign's results; results/NAME where not given.")
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes at a time; the campaign's where not given.")
+@click.option("--fresh", is_flag=True, help="Begin anew; an existing study is moved aside, not deleted.")
+def sensitivity(
+    campaign: Path,
+    method: str,
+    parameters: tuple[str, ...],
+    samples: int | None,
+    study: str | None,
+    store: Path | None,
+    workers: int | None,
+    fresh: bool,
+) -> None:
+    """Say which parameters matter: one at a time, or all together with their interactions.
+
+    \b
+    oat     sweeps one parameter at a time, the others where the campaign has them
+    morris  elementary effects: cheap, to sort out what does not matter
+    sobol   the share of each, alone and with others, in the variance of every quantity
+
+    \b
+    divideropt sensitivity campaigns/divider.yaml
+    divideropt sensitivity campaigns/divider.yaml --method sobol --samples 16384
+    divideropt sensitivity campaigns/divider.yaml --parameter 'stem_ratio=0.1..0.6' --study stem
+    """  # noqa: D301 (\b is click's)
+    asked = _load(campaign)
+    from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.store import Store
+
+    wanted = study_of(asked, Asked(method, parameters, samples))
+    folder = store or Path("results") / asked.name
+    given = {"--method": method, "--samples": samples, "--study": study, "--store": store}
+    options = [word for key, value in given.items() if value is not None for word in (key, str(value))]
+    chosen = [word for name in parameters for word in ("--parameter", name)]
+    again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
+    kept = study_store(Store(folder), study or method)
+    run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
+    _say(f"study:  {kept.folder}")
+
+
+@commands.command()
 @click.argument("designs", type=_FILE)
 @click.option("--campaign", type=_FILE, help="Whose model, scenario and parameters; divider.yaml's where not given.")
 @click.option("--out", type=_FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
@@ -250,7 +298,7 @@ def check(campaign: Path) -> None:
     from divideropt.campaign.plan import plan_runs
 
     runs = plan_runs(asked)
-    budget = sum(run.options.budget for run in runs)
+    budget = sum(run.budget for run in runs)
     _say(f"{campaign}: right. {len(runs)} runs, at most {budget} evaluations: {', '.join(r.name for r in runs)}")
 
 

@@ -21,6 +21,7 @@ from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests,
 from divideropt.analysis.scale import Scale, region
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
+from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -29,6 +30,8 @@ __all__ = [
     "Comparison",
     "Contender",
     "Convergence",
+    "Effect",
+    "Failures",
     "Goals",
     "Indicator",
     "Kkt",
@@ -38,6 +41,8 @@ __all__ = [
     "Scale",
     "Score",
     "Summary",
+    "Sweep",
+    "Sweeps",
     "Tally",
     "Verified",
     "achievement",
@@ -51,6 +56,7 @@ __all__ = [
     "converged",
     "convergence",
     "effect_size",
+    "effects_of",
     "gaps",
     "holm",
     "hypervolume",
@@ -76,6 +82,7 @@ __all__ = [
     "scales_of",
     "several_test",
     "summarise",
+    "sweeps_of",
     "tally",
     "worst_surface",
     "worth_verifying",

@@ -18,12 +18,20 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
-from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
+from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
-from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.campaign.ranges import read_range
+from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
+from divideropt.campaign.uncertainty import (
+    StatisticWord,
+    UncertaintyConfig,
+    check_uncertainty,
+    uncertainty_rules,
+)
 from divideropt.campaign.worst_case import named_scenarios, read_worst_of, worst_case_rules
-from divideropt.models import Parameter, Quantity
+from divideropt.models import Quantity
 
 S = TypeVar("S", "ObjectiveConfig", "ConstraintConfig")
 
@@ -59,6 +67,8 @@ class ObjectiveConfig(Section):
     """w of (3.24)."""
     worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
     """Scenarios over which the quantity's largest value counts; `scenario` is the model's own, `all` every one."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` counts; without one the design as it is."""
 
 
 class ConstraintConfig(Section):
@@ -70,6 +80,8 @@ class ConstraintConfig(Section):
     """Upper bound, in the quantity's unit."""
     worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
     """Scenarios in all of which the bounds are kept; `scenario` is the model's own, `all` every one."""
+    statistic: StatisticWord | None = None
+    """Which statistic over the samples of `uncertainty` keeps them; without one the design as it is."""
 
     @model_validator(mode="after")
     def _bounds(self) -> Self:
@@ -141,9 +153,12 @@ FEW_POINTS = 200
 """Of which neighbours are simulated where a campaign does not say: some seconds by the valve's compiled solver."""
 
 
-def _affordable(model: object) -> OptimalityConfig:
-    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes."""
-    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock"
+def _affordable(model: object, uncertainty: object) -> OptimalityConfig:
+    """By another solver a simulation takes dozens of times as long; by a model of somebody's own perhaps minutes.
+
+    Under uncertainty each design is simulated as often as there are samples.
+    """
+    quick = isinstance(model, DividerConfig) and model.solver.method == "rosenbrock" and uncertainty is None
     return OptimalityConfig(points=FEW_POINTS if quick else 0)
 
 
@@ -164,22 +179,6 @@ def _model(value: Any, info: ValidationInfo) -> DividerConfig | PluginConfig:
 def names_plugin(model: object) -> bool:
     """Whether a `model` section, as written, names a class of the user's own."""
     return isinstance(model, Mapping) and isinstance(model.get("kind"), str) and ":" in model["kind"]
-
-
-def _range(parameter: Parameter, raw: object) -> tuple[float, float]:
-    if isinstance(raw, Mapping):
-        reserved = (
-            "`choices` and `step` are reserved" if {"choices", "step"} & raw.keys() else "a mapping is no range"
-        )
-        raise ValueError(f"{reserved}; write a range, [lower, upper]")
-    if not isinstance(raw, list | tuple) or len(raw) != 2:
-        raise ValueError(f"{show(raw)} is not a range; write two values, [lower, upper]")
-    ends = collect(dict(enumerate(raw)), (0, 1), "bound", lambda _, end: measure_of(parameter).read(end))
-    if ends[0] >= ends[1]:
-        raise ValueError(
-            f"the lower bound {show(raw[0])} is not below the upper, {show(raw[1])}; exchange or widen them"
-        )
-    return ends[0], ends[1]
 
 
 def _objective(quantity: Quantity, raw: object) -> ObjectiveConfig:
@@ -234,7 +233,7 @@ class Campaign(Section):
     """What is optimised."""
     variables: Annotated[
         Mapping[str, tuple[float, float]],
-        PlainValidator(by_name("parameters", _range, least=1)),
+        PlainValidator(by_name("parameters", read_range, least=1)),
         WithJsonSchema(schemas.variables()),
     ]
     """Lower and upper bound of each parameter that varies, in its unit."""
@@ -256,12 +255,16 @@ class Campaign(Section):
         Mapping[str, float], PlainValidator(_reference), WithJsonSchema(schemas.reference_point())
     ] = Field(default_factory=dict)
     """Where the hypervolume is measured from: nothing, or a value for every objective."""
+    uncertainty: Annotated[UncertaintyConfig | None, AfterValidator(check_uncertainty)] = None
+    """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
-    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"]))
-    """How near to stationary front points are; 200 points by the valve's compiled solver, by others none."""
+    optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
+    """How near to stationary front points are; 200 points by the valve's compiled solver, none where that is dear."""
+    sensitivity: SensitivityConfig = SensitivityConfig()
+    """What `divideropt sensitivity` varies, and how it samples that."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 
@@ -269,12 +272,14 @@ class Campaign(Section):
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say what does not fit together between sections."""
         fixed = _section(_section(raw, "model"), "set")
-        for name in _section(raw, "variables"):
+        varying = () if is_study(_section(raw, "strategies")) else _section(raw, "variables")
+        for name in varying:
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
         yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
+        yield from uncertainty_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():

@@ -8,8 +8,10 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.representer import SafeRepresenter
 
+from divideropt.campaign import schemas
 from divideropt.campaign.config import Campaign, ConstraintConfig, ObjectiveConfig
 from divideropt.campaign.fields import measure_of
+from divideropt.campaign.uncertainty import with_failures
 from divideropt.models import Quantity
 
 
@@ -22,41 +24,46 @@ def dump_campaign(campaign: Campaign) -> str:
     Returns:
         YAML from which `parse_campaign` makes an equal campaign.
     """
-    tables = campaign.model.tables()
+    tables = with_failures(campaign.model.tables(), campaign.uncertainty is not None)
     parameters, quantities = tables.parameters or {}, tables.quantities or {}
     data = campaign.model_dump(mode="json", exclude_none=True, exclude={"model", *_BY_NAME})
     data["model"] = campaign.model.model_dump(mode="json", exclude_none=True)
     data["model"]["set"] = _measures(campaign.model.set, parameters)
     for scenario in data["model"].get("scenarios", {}).values():
         scenario["set"] = _measures(scenario["set"], parameters)
-    data["variables"] = {
-        name: [measure_of(parameters[name]).write(bound) for bound in bounds]
-        for name, bounds in campaign.variables.items()
-    }
+    data["variables"] = _ranges(campaign.variables, parameters)
+    data["sensitivity"]["parameters"] = _ranges(campaign.sensitivity.parameters, parameters)
     data["objectives"] = _sections(campaign.objectives, quantities)
     data["constraints"] = _sections(campaign.constraints, quantities)
     data["reference_point"] = _measures(campaign.reference_point, quantities)
     data["strategies"] = {plan.name: plan.as_written() for plan in campaign.strategies}
-    return _yaml({name: data[name] for name in Campaign.model_fields})
+    if campaign.uncertainty is not None:
+        data["uncertainty"] = campaign.uncertainty.as_written(parameters)
+    return _yaml({name: data[name] for name in Campaign.model_fields if name in data})
 
 
 def campaign_schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of campaigns for the divider."""
-    schema = Campaign.model_json_schema()
+    schema = schemas.with_shared_measures(Campaign.model_json_schema(), "UncertaintyConfig")
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **schema,
+        **schemas.uncertainty_rules(),
         "title": "divideropt campaign",
         "description": "A campaign for the flow divider, `model.kind: divider`.",
     }
 
 
-_BY_NAME = ("variables", "objectives", "constraints", "reference_point", "strategies")
+_BY_NAME = ("variables", "objectives", "constraints", "reference_point", "uncertainty", "strategies")
 """Sections whose units hang on their keys, which pydantic cannot know."""
 
 
 def _measures(values: Mapping[str, float], table: Mapping[str, Any]) -> dict[str, str | float]:
     return {name: measure_of(table[name]).write(value) for name, value in values.items()}
+
+
+def _ranges(ranges: Mapping[str, tuple[float, float]], table: Mapping[str, Any]) -> dict[str, list[str | float]]:
+    return {name: [measure_of(table[name]).write(end) for end in ends] for name, ends in ranges.items()}
 
 
 def _sections(
@@ -74,8 +81,8 @@ def _sections(
 
 
 def _written(field: str, value: Any, quantity: Quantity) -> Any:
-    """Write a field of an objective or constraint; all but two are in the quantity's unit."""
-    return {"weight": value, "worst_of": value}.get(field) or measure_of(quantity).write(value)
+    """Write a field of an objective or constraint; all but three are in the quantity's unit."""
+    return {"weight": value, "worst_of": value, "statistic": value}.get(field) or measure_of(quantity).write(value)
 
 
 def _yaml(data: dict[str, Any]) -> str:

@@ -19,10 +19,10 @@ from divideropt.errors import StoreError
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 
-BUDGETS = ("generations", "evaluations")
+BUDGETS = ("generations", "evaluations", "trajectories", "samples")
 """Options that may grow."""
 
-PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point")
+PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point", "uncertainty")
 """Sections that say what is optimised, and how well a front is."""
 
 _SIDES = ("the store", "the campaign")
@@ -44,8 +44,9 @@ def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
         raise StoreError(
             f"{where}: this store belongs to another campaign:\n  "
             + "\n  ".join(differences)
-            + "\nOnly generations, evaluations, seeds and strategies may be added, and a termination changed; name "
-            "another folder (--store), or start anew (--fresh, which moves the old store aside)."
+            + "\nOnly generations, evaluations, trajectories, samples, seeds and strategies may be added, and a "
+            "termination changed; name another folder (--store), or start anew (--fresh, which moves the old store "
+            "aside)."
         )
 
 
@@ -84,7 +85,7 @@ def differences(
     """
     before, after = _as_written(first), _as_written(second)
     for section in sections:
-        yield from _compare(section, before[section], after[section], sides)
+        yield from _compare(section, before.get(section), after.get(section), sides)
     for section in ("variables", "objectives", "constraints"):
         old, new = list(before[section]), list(after[section])
         if old != new and sorted(old) == sorted(new):

@@ -13,6 +13,7 @@ from divideropt.campaign.divider import divider_tables
 from divideropt.campaign.fields import Tables
 from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import MOST_MISTAKES, Document, KeyPath, read_document, read_text
+from divideropt.campaign.uncertainty import with_failures
 from divideropt.errors import FileMistakes, Mistake, StoreError, UsageError
 from divideropt.store import Store
 
@@ -66,7 +67,7 @@ def campaign_of(document: Document) -> Campaign:
     """Make a campaign of what has been read; raises as `load_campaign`."""
     found = list(document.mistakes)
     try:
-        tables = _tables(document)
+        tables = with_failures(_tables(document), _is_uncertain(document.data))
     except UsageError as error:
         tables = Tables()
         found += _placed(document, ("model", "kind"), str(error))
@@ -103,6 +104,10 @@ def _tables(document: Document) -> Tables:
     return Tables(made.parameters, made.quantities)
 
 
+def _is_uncertain(data: object) -> bool:
+    return isinstance(data, Mapping) and data.get("uncertainty") is not None
+
+
 def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
     """Say which strategies do not suit a problem of this size."""
     for plan in campaign.strategies:
@@ -110,6 +115,13 @@ def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
         if objection is not None:
             option, sentence = objection
             yield from _placed(document, ("strategies", plan.name, option), sentence)
+        budget = plan.options.budget(len(campaign.variables))
+        if plan.window is not None and plan.window >= budget:
+            sentence = (
+                f"{plan.window} is too large for a budget of {budget} evaluations, within which it would never end a "
+                "run; give a smaller window, or a larger budget"
+            )
+            yield from _placed(document, ("strategies", plan.name, "termination", "stagnation", "window"), sentence)
 
 
 def _reported(document: Document, detail: ErrorDetails) -> list[Mistake]:

@@ -8,11 +8,13 @@ import numpy as np
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.termination import TerminationConfig
-from divideropt.campaign.worst_case import gathered_name, worst_cases
+from divideropt.campaign.uncertainty import counted_name, uncertain_model
+from divideropt.campaign.worst_case import worst_cases
 from divideropt.models import Model, Quantity
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import Divider
 from divideropt.models.divider.scenarios import BASE, Scenarios
+from divideropt.models.uncertain import Uncertain
 from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
 from divideropt.strategies import Strategy
 
@@ -26,6 +28,7 @@ class Run:
         strategy: The strategy's name.
         options: The strategy.
         seed: Its seed.
+        budget: Most evaluations it asks for.
         termination: By which rules it ends before its budget is spent; None by none.
     """
 
@@ -33,20 +36,27 @@ class Run:
     strategy: str
     options: Strategy
     seed: int
+    budget: int
     termination: TerminationConfig | None = None
 
 
 def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
     """List the runs, in the campaign's order."""
+    variables = len(campaign.variables)
     return tuple(
-        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.termination)
+        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.options.budget(variables), plan.termination)
         for plan in campaign.strategies
         for seed in plan.seeds
     )
 
 
 def build_model(campaign: Campaign) -> Model:
-    """Make the campaign's model."""
+    """Make the campaign's model, with its scenarios and its uncertainty."""
+    return uncertain_model(campaign, _certain_model(campaign))
+
+
+def _certain_model(campaign: Campaign) -> Model:
+    """Make the campaign's model without its uncertainty."""
     config = campaign.model
     if not isinstance(config, DividerConfig):
         return config.make()
@@ -60,6 +70,8 @@ def build_model(campaign: Campaign) -> Model:
 
 def dividers(model: Model) -> Mapping[str, Divider]:
     """Return the divider under each scenario by name, the campaign's own first; nothing for another model."""
+    if isinstance(model, Uncertain):
+        return dividers(model.model)
     if isinstance(model, Scenarios):
         return model.models
     return {BASE: model} if isinstance(model, Divider) else {}
@@ -76,8 +88,7 @@ def build_problem(campaign: Campaign) -> Problem:
             tuple(Variable(model.parameters[name], *bounds) for name, bounds in campaign.variables.items())
         ),
         objectives=tuple(
-            Objective(quantities[gathered_name(name, o.worst_of)], o.goal, o.weight)
-            for name, o in campaign.objectives.items()
+            Objective(quantities[counted_name(name, o)], o.goal, o.weight) for name, o in campaign.objectives.items()
         ),
         constraints=tuple(_constraints(campaign, quantities)),
     )
@@ -87,12 +98,12 @@ def _constraints(campaign: Campaign, quantities: Mapping[str, Quantity]) -> Iter
     """Make the constraints; the two bounds of one over several scenarios are on two quantities."""
     for name, c in campaign.constraints.items():
         if not c.worst_of:
-            yield Constraint(quantities[name], c.min, c.max)
+            yield Constraint(quantities[counted_name(name, c)], c.min, c.max)
             continue
         if c.min is not None:
-            yield Constraint(quantities[gathered_name(name, c.worst_of, least=True)], c.min, None)
+            yield Constraint(quantities[counted_name(name, c, least=True)], c.min, None)
         if c.max is not None:
-            yield Constraint(quantities[gathered_name(name, c.worst_of)], None, c.max)
+            yield Constraint(quantities[counted_name(name, c)], None, c.max)
 
 
 def reference_of(campaign: Campaign) -> FloatArray | None:

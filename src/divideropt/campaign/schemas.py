@@ -9,6 +9,8 @@ from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.scenarios import BASE
 from divideropt.models.divider.tolerances import STATE_UNITS
+from divideropt.models.statistic import KINDS
+from divideropt.models.uncertain import FAILED_SHARE
 
 Schema = dict[str, Any]
 
@@ -23,6 +25,11 @@ def variables() -> Schema:
     return _mapping("What varies, and between which bounds.", {p.name: _range(p) for p in PARAMETERS.values()}, 1)
 
 
+def study() -> Schema:
+    """Ranges of parameters in a study."""
+    return _mapping("What is studied, and between which ends.", {p.name: _range(p) for p in PARAMETERS.values()})
+
+
 def objectives() -> Schema:
     """Goals and weights of quantities."""
     return _prefixable(_mapping("What is minimised.", _each(_objective), 1))
@@ -31,6 +38,43 @@ def objectives() -> Schema:
 def constraints() -> Schema:
     """Bounds of quantities."""
     return _prefixable(_mapping("What a feasible design keeps; bounds are inclusive.", _each(_constraint)))
+
+
+def uncertain(entries: Schema) -> Schema:
+    """Distributions of parameters, each described by its name."""
+    return _mapping("What is uncertain of each design, and how.", entries, 1)
+
+
+def uncertainty_rules() -> Schema:
+    """What a campaign without `uncertainty` cannot ask for: statistics, and the share of samples that fail."""
+    plain = {"type": "object", "additionalProperties": {"not": _given("statistic")}}
+    sections = ("objectives", "constraints", "reference_point")
+    unasked = {name: {"properties": {FAILED_SHARE.name: False}} for name in sections}
+    without = {
+        name: {"allOf": [unasked[name], plain]} if name in sections[:2] else unasked[name] for name in sections
+    }
+    return {"if": {"not": _given("uncertainty")}, "then": {"properties": without}}
+
+
+def with_shared_measures(schema: Schema, section: str) -> Schema:
+    """Define each kind of measure in a section once, where it would stand there hundreds of times."""
+    found: Schema = {}
+    definitions = schema["$defs"]
+    shared = {section: _refer(definitions[section], found)}
+    return {**schema, "$defs": {**definitions, **shared, **found}}
+
+
+def _refer(node: Any, found: Schema) -> Any:
+    """Replace measures by references to their definitions, of which those that are new are added to `found`."""
+    if isinstance(node, list):
+        return [_refer(part, found) for part in node]
+    if not isinstance(node, dict):
+        return node
+    if "pattern" not in node:
+        return {key: _refer(part, found) for key, part in node.items()}
+    names = [name for name, measure in found.items() if measure == node] or [f"Measure{len(found) + 1}"]
+    found[names[0]] = node
+    return {"$ref": f"#/$defs/{names[0]}"}
 
 
 def reference_point() -> Schema:
@@ -97,7 +141,7 @@ def scenario_name() -> str:
 
 
 def _each(describe: Callable[[Quantity], Schema]) -> Schema:
-    return {q.name: describe(q) for q in QUANTITIES.values()}
+    return {q.name: describe(q) for q in (*QUANTITIES.values(), FAILED_SHARE)}
 
 
 def _mapping(description: str, properties: Schema, least: int = 0) -> Schema:
@@ -128,14 +172,24 @@ def _range(parameter: Parameter) -> Schema:
 def _objective(quantity: Quantity) -> Schema:
     weight = Measure("", POSITIVE).schema("w of (3.24)")
     section = _mapping(
-        quantity.description, {"goal": _or_null(_value(quantity)), "weight": weight, "worst_of": _worst_of()}
+        quantity.description, {"goal": _or_null(_value(quantity)), "weight": weight, **_gathering(quantity)}
     )
     return {**section, "type": ["object", "null"]}
 
 
 def _constraint(quantity: Quantity) -> Schema:
     bound = _or_null(_value(quantity))
-    return _mapping(quantity.description, {"min": bound, "max": bound, "worst_of": _worst_of()}, 1)
+    return _mapping(quantity.description, {"min": bound, "max": bound, **_gathering(quantity)}, 1)
+
+
+def _gathering(quantity: Quantity) -> Schema:
+    """Over what a quantity is taken: scenarios, samples; the share of samples that fail is over these already."""
+    return {} if quantity is FAILED_SHARE else {"worst_of": _worst_of(), "statistic": _or_null(_statistic())}
+
+
+def _statistic() -> Schema:
+    words = "Of the samples of `uncertainty`: mean, sd, or a percentile such as p95."
+    return {"type": "string", "pattern": rf"^({KINDS})$", "description": words}
 
 
 def _worst_of() -> Schema:

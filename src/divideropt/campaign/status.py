@@ -96,7 +96,7 @@ def read_status(store: Store) -> StoreStatus:
             RunStatus(
                 run=run.name,
                 evaluations=found.evaluations,
-                budget=run.options.budget,
+                budget=run.budget,
                 feasible=int(found.told.feasible.sum()),
                 outcomes=dict(sorted(found.outcomes.items())),
                 best=None if found.best is None else found.best.value,

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from divideropt.errors import words_of
-from divideropt.models.base import FloatArray, Model, Outcome, Verdict
+from divideropt.models.base import FloatArray, Model, Verdict
+from divideropt.models.guarded import evaluate_guarded
 
 
 def simulate(
@@ -32,7 +32,7 @@ def simulate(
     full[:] = [fixed[name] for name in parameters]
     full[:, [parameters.index(name) for name in names]] = designs
     with one_thread():
-        return _guarded(model, full)
+        return evaluate_guarded(model, full)
 
 
 @contextmanager
@@ -60,17 +60,3 @@ _entered: list[bool] = []
 def _linear_algebra() -> ThreadpoolController:
     """Find the libraries that are loaded, once: it takes milliseconds."""
     return ThreadpoolController()
-
-
-def _guarded(model: Model, full: FloatArray) -> tuple[FloatArray, list[Verdict]]:
-    """Evaluate a batch; where that raises, one design at a time, so that only the guilty one is blamed."""
-    try:
-        with np.errstate(all="ignore"):  # a failed design says so by its outcome
-            quantities, verdicts = model.evaluate(full)
-    except (Exception, SystemExit) as error:  # a model may be anybody's
-        if len(full) == 1:
-            text = f"the model broke down: {words_of(error)}"
-            return np.full((1, len(model.quantities)), np.nan), [Verdict(Outcome.CRASHED, text)]
-        parts = [_guarded(model, row[None]) for row in full]
-        return np.concatenate([q for q, _ in parts]), [v for _, verdicts in parts for v in verdicts]
-    return np.asarray(quantities, dtype=np.float64), list(verdicts)

@@ -3,6 +3,7 @@
 from divideropt.report.comparison import comparison_data, comparison_table, comparison_text
 from divideropt.report.page import write_report
 from divideropt.report.response_page import Curve, ResponseCurves, response_page, write_response
+from divideropt.report.sweeps_page import write_sweeps
 
 __all__ = [
     "Curve",
@@ -13,4 +14,5 @@ __all__ = [
     "response_page",
     "write_report",
     "write_response",
+    "write_sweeps",
 ]

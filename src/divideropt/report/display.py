@@ -9,6 +9,8 @@ from types import MappingProxyType
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.statistic import parted
+from divideropt.models.statistic import words_of as statistic_words
 
 _UNITS: Mapping[str, tuple[tuple[float, str, float], ...]] = MappingProxyType(
     {
@@ -83,6 +85,12 @@ class Axis:
         """Write a value, given in the platform's unit, without the unit."""
         return number(self.scaled(value))
 
+    def short(self, value: float) -> str:
+        """Write a value that was computed with the unit shown, without zeros that say nothing."""
+        text = number(self.scaled(value))
+        text = text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+        return f"{text} {self.shown.unit}".rstrip()
+
     def bound(self, value: float) -> str:
         """Write a value that somebody gave, a bound or a goal, as short as it was given, with the unit shown."""
         return f"{self.scaled(value):.6g} {self.shown.unit}".rstrip().replace("-", "−")
@@ -98,7 +106,17 @@ def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
     symbol = re.sub(r",?\s*\(\d+\.\d+\)", "", entry.symbol).strip()
     if isinstance(entry, Quantity) and entry.signed and symbol:
         symbol = f"|{symbol}|"
-    return Axis(entry.name, entry.name.replace("_", " "), symbol, entry.description, shown_as(entry.unit, values))
+    symbol = symbol if symbol.strip("|") else ""  # of a magnitude that has none
+    return Axis(entry.name, _words_of(entry.name), symbol, entry.description, shown_as(entry.unit, values))
+
+
+def _words_of(name: str) -> str:
+    """Word a column's name; `p95.settling_time` is the `95th percentile of settling time`."""
+    statistic = parted(name)
+    if statistic is None:
+        return name.replace("_", " ")
+    kind, quantity = statistic
+    return f"{statistic_words(kind)} of {_words_of(quantity)}"
 
 
 def shown_as(unit: str, values: Iterable[float]) -> Shown:

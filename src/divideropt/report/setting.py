@@ -7,13 +7,14 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.models.divider import Event, Scenario
 from divideropt.models.divider.scenarios import BASE
 from divideropt.report.display import axis_of
+from divideropt.report.uncertainty import uncertainty_words
 
 
 def setting_of(campaign: Campaign) -> tuple[tuple[str, str], ...]:
     """Word what was simulated, as pairs of a heading and a sentence."""
     model = campaign.model
     if not isinstance(model, DividerConfig):
-        return (("Model", model.kind),)
+        return (("Model", model.kind), *uncertainty_words(campaign))
     solver = model.solver
     scenarios = (
         ("Scenario" if name == BASE else f"Scenario {name}", _scenario_words(scenario) + _set_words(model, name))
@@ -25,6 +26,7 @@ def setting_of(campaign: Campaign) -> tuple[tuple[str, str], ...]:
         ("Formulation", model.formulation + loss),
         ("Parameters", _parameter_words(model)),
         *scenarios,
+        *uncertainty_words(campaign),
         ("Solver", f"{solver.method}, relative tolerance {solver.rtol:g}, at most {solver.max_steps} steps"),
     )
 

@@ -27,6 +27,9 @@ from divideropt.store.parts import Parts
 from divideropt.store.schema import TableSchema
 from divideropt.store.tables import check_replaceable, read_table, write_table
 
+STUDIES = "sensitivity"
+"""Where a campaign's store has its sensitivity studies, each a store in a folder of its own."""
+
 LARGEST_CAMPAIGN = 2**22
 """No campaign as resolved is larger [bytes]: a campaign's file may have a quarter of it."""
 
@@ -79,6 +82,15 @@ class Store:
     def exists(self) -> bool:
         """Whether there is a store in the folder."""
         return self.campaign_path.is_file()
+
+    def study(self, name: str) -> "Store":
+        """Return the store of a sensitivity study of this campaign, there or not."""
+        return Store(self._part_of_store(STUDIES, name))
+
+    def studies(self) -> tuple["Store", ...]:
+        """Return the stores of the studies that there are, by name."""
+        folders = sorted((self.folder / STUDIES).glob("[!.]*"))
+        return tuple(store for store in map(Store, folders) if store.exists and ".before-" not in store.folder.name)
 
     def read_campaign(self) -> str:
         """Return the campaign as resolved, YAML.
@@ -223,7 +235,7 @@ class Store:
             UsageError: The folder holds something else, which is not ours to move.
         """
         if not self.exists:
-            if self.folder.is_dir() and any(self.folder.iterdir()):
+            if self.folder.is_dir() and any(path.name != STUDIES for path in self.folder.iterdir()):
                 raise UsageError(
                     f"{self.folder}: not a store (no campaign.yaml), and not empty; name another --store"
                 )

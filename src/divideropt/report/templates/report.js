@@ -256,6 +256,19 @@
     byId("choice").addEventListener("change", (event) => select(event.target.value));
   }
 
+  // --- one quantity over every parameter of a study ---
+
+  function showQuantity(name) {
+    const figure = shown.get("panels");
+    const chosen = report.quantities[name];
+    figure.data.forEach((trace, i) => { trace.y = chosen.y[i]; });
+    for (const [key, axis] of Object.entries(figure.layout)) {
+      if (/^yaxis/.test(key) && axis.title) axis.title.text = chosen.label;
+    }
+    figure.layout.uirevision = name; // what was zoomed is another's
+    return redraw(figure);
+  }
+
   async function begin() {
     const pictures = report.figures.filter((figure) => figure.webgl);
     for (const figure of report.figures) if (!figure.webgl) await draw(figure, true);
@@ -263,6 +276,7 @@
       listen();
       await select(report.selected);
     }
+    if (report.quantities) byId("quantity").addEventListener("change", (event) => showQuantity(event.target.value));
     const able = pictures.length > 0 && webgl();
     for (const figure of pictures) await draw(figure, able); // last: they take longest, the rest is there already
     for (const media of ["(prefers-color-scheme: dark)", "print"]) {
