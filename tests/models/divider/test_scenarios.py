@@ -82,6 +82,8 @@ def test_what_is_known_of_each_scenario_follows_from_the_verdict() -> None:
     assert outcomes_by_scenario(own, scenarios) == (Outcome.AT_STOP, None, None)
     low = Verdict(Outcome.UNSTABLE, "in scenario low: an equilibrium is unstable")
     assert outcomes_by_scenario(low, scenarios) == (Outcome.OK, Outcome.UNSTABLE, None)
+    sampled = Verdict(Outcome.UNSTABLE, "in 3 of 64 samples: in scenario low: an equilibrium is unstable")
+    assert outcomes_by_scenario(sampled, scenarios) == (Outcome.OK,) * 3
     assert outcomes_by_scenario(Verdict(Outcome.CRASHED, "the model broke down"), scenarios) == (Outcome.CRASHED,) * 3
 
 

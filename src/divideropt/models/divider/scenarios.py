@@ -133,10 +133,13 @@ def outcomes_by_scenario(verdict: Verdict, scenarios: Sequence[str]) -> tuple[Ou
 
     Returns:
         Ok for those before the one that failed, and None for those after it, of which nothing is known. What did not
-        come from one scenario's simulation, a crash say, is the outcome of all.
+        come from one scenario's simulation, a crash say, is the outcome of all. A design that fails in samples of
+        uncertain parameters only is ok in every scenario as it is.
     """
-    if verdict.ok or verdict.outcome in (Outcome.CRASHED, Outcome.TIMED_OUT):
+    if verdict.outcome in (Outcome.CRASHED, Outcome.TIMED_OUT):
         return (verdict.outcome,) * len(scenarios)
+    if verdict.ok or _SAMPLED.match(verdict.text):
+        return (Outcome.OK,) * len(scenarios)
     named = _NAMED.match(verdict.text)
     place = scenarios.index(named[1] if named else BASE)
     before: tuple[Outcome | None, ...] = (Outcome.OK,) * place
@@ -166,6 +169,9 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
 
 _NAMED = re.compile(r"in scenario ([a-z][a-z0-9_]*): ", re.ASCII)
 """How the text of a verdict names the scenario."""
+
+_SAMPLED = re.compile(r"in [0-9]+ of [0-9]+ samples: ", re.ASCII)
+"""How it says that the design fails in samples of uncertain parameters, not as it is."""
 
 
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
