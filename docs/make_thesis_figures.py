@@ -1,6 +1,6 @@
 """The figures of Chapters 2 and 3 of the thesis drawn again, and twins of three of Chapter 4, with a verdict each.
 
-Run it with `python docs/make_thesis_figures.py`; it takes two or three minutes on one core. It writes
+Run it with `python docs/make_thesis_figures.py`; it takes about a minute on one core. It writes
 `docs/model/figures.md` and `docs/images/thesis/*.svg`. Running it twice gives the same bytes.
 """
 

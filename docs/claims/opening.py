@@ -64,7 +64,9 @@ def _rim_dynamics(runs: Runs) -> Judgement:
 def _rim_linear(runs: Runs) -> Judgement:
     sweep = runs.sweep("rim_thickness")
     off = off_line(sweep.places, sweep["flow_difference"])
-    return too_few(sweep) or Judgement(straight(off), f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}")
+    return too_few(sweep) or Judgement(
+        straight(off), f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}"
+    )
 
 
 def _rim_to_zero(runs: Runs) -> Judgement:

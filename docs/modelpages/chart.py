@@ -152,7 +152,7 @@ def draw(panels: Sequence[Panel], description: str, columns: int | None = None) 
         f"<title>{escape(description)}</title>",
         _style(filled=any(panel.areas or panel.dots for panel in panels)),
         f'<rect class="paper" width="{width}" height="{height}" fill="#ffffff"/>',
-        *_legend([one for panel in panels for one in (*panel.areas, *panel.lines, *panel.dots)], width),
+        *_legend([one for panel in panels for one in _drawn(panel)], width),
     ]
     for place, panel in enumerate(panels):
         row, column = divmod(place, across)
@@ -162,7 +162,7 @@ def draw(panels: Sequence[Panel], description: str, columns: int | None = None) 
 
 
 def _panel(panel: Panel, left: float, width: float, number: int) -> list[str]:
-    curves = (*panel.lines, *panel.dots)
+    curves = [one for one in _drawn(panel) if not isinstance(one, Area)]
     x_low, x_high = panel.x_range or _extent([curve.x for curve in curves])
     y_low, y_high = panel.y_range or _padded(_extent([curve.y for curve in curves]))
     x = Axis(x_low, x_high, left + _LEFT, left + width - _RIGHT)
@@ -199,6 +199,13 @@ def _panel(panel: Panel, left: float, width: float, number: int) -> list[str]:
     return parts
 
 
+def _drawn(panel: Panel) -> list[Line | Area | Dots]:
+    drawn: list[Line | Area | Dots] = [*panel.areas]
+    drawn += panel.lines
+    drawn += panel.dots
+    return drawn
+
+
 def _curve(line: Line, x: Axis, y: Axis) -> str:
     path, pen = [], "M"
     for a, b in zip(line.x.tolist(), line.y.tolist(), strict=True):
@@ -232,9 +239,7 @@ def _legend(drawn: Sequence[Line | Area | Dots], width: float) -> list[str]:
             case Line():
                 parts.append(f'<path d="M{at:.1f} 20L{at + 36:.1f} 20" fill="none" {_stroke(one)}/>')
             case Area():
-                parts.append(
-                    f'<path d="M{at:.1f} 13h36v14h-36Z" {_fill(one.colour)} fill-opacity="0.35"/>'
-                )
+                parts.append(f'<path d="M{at:.1f} 13h36v14h-36Z" {_fill(one.colour)} fill-opacity="0.35"/>')
             case Dots():
                 parts.append(_dot(one, at + 18, 20.0))
         parts.append(_text(at + 44, 24.5, one.label, "start"))

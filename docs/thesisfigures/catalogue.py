@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from claims.judgement import Statement
 from modelpages.figures import figure_2_6
+
 from thesisfigures import complex_run, flows, ideal, standard_test, sweeps, twins
 from thesisfigures.figure import Both, Figure
 from thesisfigures.statements import said_in_3_4, said_in_4
@@ -18,9 +19,7 @@ def _flows(number: str, parameter: str, words: str, own: tuple[Statement, ...] =
 
 
 def _errors(number: str, parameter: str, shows: str) -> Figure:
-    return Figure(
-        number, shows, sweeps.draw_errors(parameter), said_in_3_4(number), sweeps.left_out(parameter)
-    )
+    return Figure(number, shows, sweeps.draw_errors(parameter), said_in_3_4(number), sweeps.left_out(parameter))
 
 
 def _settling(number: str, parameter: str, words: str, own: tuple[Statement, ...] = ()) -> Figure:
@@ -30,8 +29,7 @@ def _settling(number: str, parameter: str, words: str, own: tuple[Statement, ...
     )
 
 
-def _ideal(both: Both) -> str:
-    del both
+def _ideal(_: Both) -> str:
     return figure_2_6()
 
 
@@ -136,8 +134,8 @@ NOT_DRAWN: Mapping[str, str] = MappingProxyType(
         "2.3": "exploded view, likewise",
         "2.4": "schematic with the names of pressures and flows: a legend to the equations",
         "2.5": "sketch of the grooves in three positions of the spool; what it says of the pressures is (2.3), (2.4)",
-        "2.7": "sketch of leakage paths: the model has the straight ones on its left alone; no program of ours computes "
-        "the flow lines on its right",
+        "2.7": "sketch of leakage paths: the model has the straight ones on its left alone; no program of ours "
+        "computes the flow lines on its right",
         "2.8": "sketch of a port’s edge with a rim and without; the jet itself is not modelled",
         "2.9": "sketch with the names of the pilot flows",
         "4.1": "photographs of the prototype",

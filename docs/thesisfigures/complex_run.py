@@ -9,17 +9,21 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-
 from claims.judgement import Answer, Judgement
+from modelpages.chart import Dots, Line, Panel, draw
+
 from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.plan import build_problem
 from divideropt.campaign.runner import Runner
 from divideropt.models.base import Domain, FloatArray, Outcome, Parameter, Quantity, Verdict
 from divideropt.strategies.complex_moves import VARIANTS
-from modelpages.chart import Dots, Line, Panel, draw
 from thesisfigures.figure import Both, Row
 
 POINTS = 6
 """Points of the complex: more than Box's 2n = 4, so that the drawing has something to reflect."""
+
+SEED = 1
+"""Of every random draw."""
 
 CAMPAIGN = f"""
 name: figure-3-29
@@ -28,12 +32,12 @@ variables: {{x1: [-1, 1], x2: [-1, 1]}}
 objectives: {{depth: {{goal: 1}}}}
 reference_point: {{depth: 10}}
 strategies:
-  complex: {{variant: box, restart: none, points: {POINTS}, evaluations: 120, seeds: [1]}}
+  complex: {{variant: box, restart: none, points: {POINTS}, evaluations: 120, seeds: [{SEED}]}}
 verification: {{sample: 0}}
 parallel: {{workers: 1, backend: sequential}}
 """
 
-RUN = "complex-1"
+RUN = f"complex-{SEED}"
 
 DRAWN_STEPS = 6
 """Reflections in the left panel: of all of them nothing could be made out."""
@@ -139,9 +143,8 @@ def steps_of(points: FloatArray, depths: FloatArray) -> list[Step]:
     return steps
 
 
-def draw_complex(both: Both) -> str:
+def draw_complex(_: Both) -> str:
     """Draw the first steps with their reflections, and the whole run."""
-    del both
     points, depths = logged_run()
     steps = steps_of(points, depths)
     square = (-1.0, 1.0)
@@ -152,7 +155,7 @@ def draw_complex(both: Both) -> str:
     centroids = np.array([s.centroid for s in shown])
     accepted = np.array([s.trials[-1] for s in shown])
     left = Panel(
-        [*_contours(), Line("worst to reflection", *reflections[0], 1, "solid", 1.4),
+        [*_contours(), Line("reflection", *reflections[0], 1, "solid", 1.4),
          Line("retreat", *retreats[0], 3, "dash", 1.4)],
         "x1", "x2", f"the first {len(shown)} steps", square, square,
         dots=[first, Dots("centroid", centroids[:, 0], centroids[:, 1], 2, radius=3.0),
@@ -161,21 +164,26 @@ def draw_complex(both: Both) -> str:
     rest = points[POINTS:]
     right = Panel(
         _contours(), "x1", "x2", f"all {len(points)} evaluations", square, square,
-        dots=[first, Dots("later trials", rest[:, 0], rest[:, 1], 4, radius=2.5)],
+        dots=[first, Dots("later", rest[:, 0], rest[:, 1], 4, radius=2.5)],
     )  # fmt: skip
     return draw([left, right], "Box's complex method on a problem of two variables, from the log of a run")
 
 
-def judge_complex(both: Both) -> list[Row]:
+def judge_complex(_: Both) -> list[Row]:
     """Judge what the caption says."""
-    del both
     points, depths = logged_run()
     return [
         Row(
             "",
+            "The initial population is randomly distributed in the parameter space",
+            "Yes if the first complex in the log is what the seed's generator draws evenly from the box.",
+            {"the run": _drawn_evenly(points)},
+        ),
+        Row(
+            "",
             "For each step, the worst point [is] reflected through the centroid of the remaining points",
-            f"From the log: yes if the first trial of every step is centroid + {BOX.reflection:g} (centroid − worst), "
-            "or, where that is beyond a bound, just inside it, as Box has it; in part if of half of them.",
+            f"From the log: yes if the first trial of every step is centroid + {BOX.reflection:g} (centroid − "
+            "worst), or, where that is beyond a bound, just inside it, as Box has it; in part if of half of them.",
             {"the run": _reflects(steps_of(points, depths))},
         ),
         Row(
@@ -188,17 +196,23 @@ def judge_complex(both: Both) -> list[Row]:
     ]
 
 
-def what_was_run(both: Both) -> str:
+def what_was_run(_: Both) -> str:
     """Say which run it is."""
-    del both
     points, depths = logged_run()
     steps = steps_of(points, depths)
     return (
-        f"The strategy `complex`, variant `box`, {POINTS} points, seed 1, without restarts, run by the campaign's own "
-        f"runner on f = 1 + u² + 3 v² with u, v along the diagonals, and drawn from the store's log: {len(points)} "
-        f"evaluations, {len(steps)} steps, {sum(len(s.trials) - 1 for s in steps)} retreats. Section 3.5.1 adds a random "
-        "part to each point, as variant `complex_rf` does; Box's method, which is drawn here, has none."
+        f"The strategy `complex`, variant `box`, {POINTS} points, seed {SEED}, without restarts, run by the "
+        f"campaign's own runner on f = 1 + u² + 3 v² with u, v along the diagonals, and drawn from the store's log: "
+        f"{len(points)} evaluations, {len(steps)} steps, {sum(len(s.trials) - 1 for s in steps)} retreats. Section "
+        "3.5.1 adds a random part to each point, as variant `complex_rf` does; Box's method, which is drawn here, "
+        "has none."
     )
+
+
+def _drawn_evenly(points: FloatArray) -> Judgement:
+    space = build_problem(parse_campaign(CAMPAIGN)).space
+    same = np.array_equal(points[:POINTS], space.sample(POINTS, np.random.default_rng(SEED)))
+    return Judgement(Answer.YES if same else Answer.NO, f"{POINTS} points, seed {SEED}")
 
 
 def _reflects(steps: Sequence[Step]) -> Judgement:
@@ -228,5 +242,3 @@ def _contours() -> list[Line]:
         along, across = np.sqrt(level - 1) * np.cos(angles), np.sqrt((level - 1) / 3) * np.sin(angles)
         lines.append(Line("", (along + across) / np.sqrt(2), (along - across) / np.sqrt(2), 5, "solid", 0.8))
     return lines
-
-

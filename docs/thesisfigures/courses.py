@@ -1,16 +1,20 @@
 """Load flows and states of a response over time, ready to be drawn."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from modelpages.chart import Line, Panel
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.response import Phase, Response
-from modelpages.chart import Line
 from thesisfigures.thin import thinned
 
 SAMPLES = 3000
 """Instants of a phase, before those that do not show are left out."""
+
+TIME = "time after the step [s]"
+"""What stands under such a panel."""
 
 FLOW_FACTOR, FLOW_UNIT = 1e4, "10⁻⁴ m³/s"
 """The author's unit of load flows, changeall.m."""
@@ -62,6 +66,21 @@ def _sampled(phase: Phase, begin: float, end: float) -> tuple[FloatArray, FloatA
         return np.empty(0), np.empty((0, 9))
     at = np.linspace(low, high, SAMPLES)
     return at, phase.trajectory.at(at)
+
+
+def panel_over(lines: Sequence[Line], y_label: str, title: str, window: tuple[float, float]) -> Panel:
+    """Return a panel over a stretch of time, its ordinate wide enough for every line.
+
+    Args:
+        lines: What is drawn, sampled in the window.
+        y_label: Of the ordinate.
+        title: Above it.
+        window: First and last instant after the step [s].
+    """
+    low, high = (limit(float(limit(line.y)) for line in lines if len(line.y)) for limit in (min, max))
+    margin = 0.05 * (high - low)
+    extent = (low - margin, high + margin)
+    return Panel([thin_line(line, window, extent) for line in lines], TIME, y_label, title, window, extent)
 
 
 def thin_line(line: Line, x_range: tuple[float, float], y_range: tuple[float, float]) -> Line:

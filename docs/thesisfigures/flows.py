@@ -4,15 +4,15 @@ from collections.abc import Callable, Sequence
 from functools import cache
 
 import numpy as np
-
 from claims.judgement import Answer, Judgement, Statement
 from claims.radius import LOST_RADIUS
 from claims.runs import AUTHOR_STEP_TIME, Runs
-from divideropt.models.base import FloatArray, Outcome
-from divideropt.models.divider.study import THESIS_POINTS, THESIS_RANGES
 from modelpages.chart import Line, Panel, draw
 from modelpages.runs import Run, measured
-from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, TimeCourse, course_between, thin_line
+
+from divideropt.models.base import FloatArray, Outcome
+from divideropt.models.divider.study import THESIS_POINTS, THESIS_RANGES
+from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, TimeCourse, course_between, panel_over
 from thesisfigures.figure import TITLES, Both
 from thesisfigures.sweeps import AXES
 
@@ -93,7 +93,7 @@ def draw_lost_control(both: Both) -> str:
     panels = []
     for name, runs in both.items():
         lines = _lines(course_between(runs.response({"spool_radius": LOST_RADIUS}), BEFORE, LONGEST), ("QL1", "QL2"))
-        panels.append(_axes(lines, f"load flow [{FLOW_UNIT}]", f"{TITLES[name]}, r = 3 mm", (BEFORE, LONGEST)))
+        panels.append(panel_over(lines, f"load flow [{FLOW_UNIT}]", f"{TITLES[name]}, r = 3 mm", (BEFORE, LONGEST)))
     return draw(panels, "Load flows before and after a step of load 1, with a spool of 3 mm radius")
 
 
@@ -117,30 +117,21 @@ def _panel(name: str, five: Sequence[Run], parameter: str, window: tuple[float, 
     for place, (value, one) in enumerate(zip(five_values(parameter), five, strict=True)):
         label = _written(parameter, value)
         lines += _lines(course_between(one.response, *window), (label, label), (place, place))[::-1]
-    return _axes(lines, Y_LABEL, TITLES[name] + words, window)
+    return panel_over(lines, Y_LABEL, TITLES[name] + words, window)
 
 
-def _lines(
-    course: TimeCourse, labels: tuple[str, str], colours: tuple[int, int] = (0, 1)
-) -> list[Line]:
+def _lines(course: TimeCourse, labels: tuple[str, str], colours: tuple[int, int] = (0, 1)) -> list[Line]:
     return [
         Line(labels[i], course.times, course.flows[:, i] * FLOW_FACTOR, colours[i], dash, 1.6)
         for i, dash in enumerate(("solid", "dash"))
     ]
 
 
-def _axes(lines: Sequence[Line], y_label: str, title: str, window: tuple[float, float]) -> Panel:
-    low, high = (limit(float(limit(line.y)) for line in lines if len(line.y)) for limit in (min, max))
-    extent = (low - 0.05 * (high - low), high + 0.05 * (high - low))
-    thin = [thin_line(line, window, extent) for line in lines]
-    return Panel(thin, "time after the step [s]", y_label, title, window, extent)
-
-
 def _on_grid(run: Run) -> FloatArray:
     course = course_between(run.response, 0.0, LONGEST)
     after = course.times > 0.0
     times = np.linspace(1e-3, LONGEST, 400)
-    return np.interp(times, course.times[after], course.flows[after, 0])
+    return np.asarray(np.interp(times, course.times[after], course.flows[after, 0]))
 
 
 def _written(parameter: str, value: float) -> str:

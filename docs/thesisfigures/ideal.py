@@ -1,11 +1,11 @@
 """Figure 2.6: what its caption and section 2.2 say of the ideal flow fraction."""
 
 import numpy as np
-
 from claims.criteria import BENT, STRAIGHT, off_line, straight
 from claims.judgement import Answer, Judgement, all_of
-from divideropt.models.divider.ideal import flow_fraction, flow_ratio
 from modelpages.figures import NEAR_LINEAR
+
+from divideropt.models.divider.ideal import flow_fraction, flow_ratio
 from thesisfigures.figure import Both, Row
 
 AREA_RATIOS = {"1:1": 1.0, "2:1": 2.0, "1:2": 0.5}
@@ -17,9 +17,8 @@ EVEN = 1e-12
 NAME = "ideal analysis"
 
 
-def judge_ideal(both: Both) -> list[Row]:
+def judge_ideal(_: Both) -> list[Row]:
     """Judge both statements; no formulation matters to them."""
-    del both
     low, high = NEAR_LINEAR
     return [
         Row(

@@ -7,6 +7,7 @@ from importlib.metadata import version
 
 from claims.judgement import Answer
 from claims.tables import table
+
 from thesisfigures.catalogue import FIGURES, NOT_DRAWN
 from thesisfigures.figure import VARIANTS, Both, Figure, Row, verdicts
 
@@ -35,24 +36,24 @@ def _opening() -> Iterator[str]:
     yield ""
     yield (
         "Every figure of Chapters 2 and 3 of the thesis (Wiens 2004) that a program can draw, and simulated twins of "
-        "three measured ones of Chapter 4, each with the verdict whether our drawing shows what the thesis says of its "
-        "own. We have the thesis as a scan without most of its images: what a figure shows is taken from its caption "
-        "and from the text that refers to it, not from the curves."
+        "three measured ones of Chapter 4, each with the verdict whether our drawing shows what the thesis says of "
+        "its own. We have the thesis as a scan without most of its images: what a figure shows is taken from its "
+        "caption and from the text that refers to it, not from the curves."
     )
     yield ""
     yield (
         "Chapter 3 is drawn twice, for `conservative` from the settled start that section 3.1 describes, and for "
-        "`listing` started cold, the author’s code as he ran it: the test of section 3.1 on Appendix B’s base set, the "
-        "ranges, the 100 points and the five values of `changeall.m` (C.2). Time runs from the step; a cold start is "
-        "the 0.6 s before it."
+        "`listing` started cold, the author’s code as he ran it: the test of section 3.1 on Appendix B’s base set, "
+        "the ranges, the 100 points and the five values of `changeall.m` (C.2). Time runs from the step; a cold "
+        "start is the 0.6 s before it."
     )
     yield ""
     yield (
         "The statements of section 3.4 and Chapter 4 (A…, B…) are those that [the page of claims](claims.md) judges, "
         "here those whose place is the figure; one placed in the text above or below a figure is not. The others, of "
         "figures that no statement is about, are judged here by a criterion of ours in the same way. A verdict joins "
-        "the answers to all that is judged of a figure: yes or no where they agree, else in part. What the words mean "
-        "(*strong*, *falls*, …) is said [there](claims.md#what-the-words-mean)."
+        "the answers to all that is judged of a figure: yes or no where they agree, else in part. What the words "
+        "mean (*strong*, *falls*, …) is said [there](claims.md#what-the-words-mean)."
     )
     yield ""
 
@@ -90,7 +91,7 @@ def _section(figure: Figure, rows: Sequence[Row], both: Both) -> Iterator[str]:
     yield f"![Figure {figure.number}: {figure.shows}]({IMAGES}/{figure.file})"
     yield ""
     yield f"**Figure {figure.number}.** {figure.shows}."
-    answers = ", ".join(f"{name} **{answer}**" for name, answer in verdicts(rows).items())
+    answers = "; ".join(f"{name} **{answer}**" for name, answer in verdicts(rows).items())
     yield f"Does it show what the thesis says? {answers}."
     yield ""
     names = list(dict.fromkeys(name for row in rows for name in row.found))
@@ -122,6 +123,6 @@ def _closing() -> Iterator[str]:
     yield ""
     packages = ", ".join(f"{name} {version(name)}" for name in ("divideropt", "numpy", "scipy", "numba"))
     yield (
-        f"Written by the code in `docs/thesisfigures/`, with {packages} on Python {platform.python_version()}. The same "
-        "versions on the same machine write the same bytes, drawings included."
+        f"Written by the code in `docs/thesisfigures/`, with {packages} on Python {platform.python_version()}. The "
+        "same versions on the same machine write the same bytes, drawings included."
     )

@@ -1,14 +1,17 @@
 """Figures 3.1 and 3.2: the standard test on the base set, and what its errors are."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
 from claims.contradictions import of_figure_3_1
 from claims.judgement import Answer, Judgement, Statement
 from claims.runs import Runs
-from divideropt.models.base import FloatArray, Outcome
 from modelpages.chart import Area, Line, Note, Panel, draw
 from modelpages.runs import Run, measured
-from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, course_between, thin_line
+from modelpages.tables import fixed
+
+from divideropt.models.base import FloatArray, Outcome
+from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, TIME, course_between, panel_over, thin_line
 from thesisfigures.figure import TITLES, Both
 from thesisfigures.thin import thinned
 
@@ -36,18 +39,15 @@ def draw_step_response(both: Both) -> str:
         ]
         end = (LAST_TICK + TICK) * FLOW_FACTOR
         lines.append(Line("the thesis’s axis ends below", np.array(WINDOW), np.array([end, end]), 2, "dot", 1.4))
-        panels.append(
-            Panel(lines, "time after the step [s]", f"load flow [{FLOW_UNIT}]", TITLES[name], WINDOW, (0.0, top))
-        )
+        panels.append(Panel(lines, TIME, f"load flow [{FLOW_UNIT}]", TITLES[name], WINDOW, (0.0, top)))
     return draw(panels, "Load flows after a step of load 1 from 10 to 15 MPa, on the base set")
 
 
 def draw_errors_shaded(both: Both) -> str:
     """Draw Figure 3.2: the areas that are the steady and the dynamic cumulative error."""
-    return draw(
-        [_shaded(name, measured(runs.response({}))) for name, runs in both.items()],
-        "Load flows after the step with the areas of the steady and the dynamic cumulative error shaded",
-    )
+    runs = {name: measured(found.response({})) for name, found in both.items()}
+    panels = [make(name, run) for make in (_shaded_flows, _shaded_difference) for name, run in runs.items()]
+    return draw(panels, "Load flows and their difference with the steady and the dynamic cumulative error shaded", 2)
 
 
 def volumes(both: Both) -> str:
@@ -55,11 +55,15 @@ def volumes(both: Both) -> str:
     parts = []
     for name, runs in both.items():
         steady, dynamic, total = _volumes(measured(runs.response({})))
-        parts.append(f"{name}: steady {1e6 * steady:.2f} mL, dynamic {1e6 * dynamic:.2f} mL, total {1e6 * total:.2f} mL")
+        parts.append(
+            f"{name}: steady {_millilitres(steady)}, dynamic {_millilitres(dynamic)}, total {_millilitres(total)}"
+        )
     return (
         f"The areas, branch 1 less branch 2: {'; '.join(parts)}. The thesis’s figure is a sample without numbers. "
-        "Between the two steady flows, from the step over t_cum = 0.2 s, lies the steady error (3.9); between each flow "
-        "and its own steady value, up to the settling time ts, the dynamic error (3.10)."
+        "Between the two steady flows, from the step over t_cum = 0.2 s, lies the steady error (3.9); between each "
+        "flow and its own steady value, up to the settling time ts, the dynamic error (3.10). Below, the same of the "
+        "difference, as the integrals have it: what is under its steady value is the dynamic error, negative. Where "
+        "the two areas lie on each other they cancel."
     )
 
 
@@ -89,7 +93,8 @@ def _sum_of_the_two(runs: Runs) -> Judgement:
     part = off / max(abs(steady), abs(dynamic))
     answer = Answer.YES if part <= SAME else Answer.IN_PART if part <= NEAR else Answer.NO
     return Judgement(
-        answer, f"{1e6 * (steady + dynamic):.3f} mL and {1e6 * total:.3f} mL, {100 * part:.1f} % of the larger part off"
+        answer,
+        f"{_millilitres(steady + dynamic)} and {_millilitres(total)}, {100 * part:.1f} % of the larger part off",
     )
 
 
@@ -123,6 +128,10 @@ ERRORS_SHADED = (
 """What the caption of Figure 3.2 says."""
 
 
+def _millilitres(volume: float) -> str:
+    return f"{fixed(1e6 * volume, 2)} mL"
+
+
 def _volumes(run: Run) -> tuple[float, float, float]:
     """Return steady, dynamic and total cumulative error, (3.9), (3.10), (3.8) [m^3]."""
     scenario = run.response.scenario
@@ -130,28 +139,42 @@ def _volumes(run: Run) -> tuple[float, float, float]:
     return steady, run["dynamic_error"], run["cumulative_error"]
 
 
-def _shaded(name: str, run: Run) -> Panel:
-    course, last = course_between(run.response, *ERROR_WINDOW), run.response.phases[-1]
-    flows = course.flows * FLOW_FACTOR
-    extent = (4.5, 5.5)
-    final = [run["load_flow_1"] * FLOW_FACTOR, run["load_flow_2"] * FLOW_FACTOR]
-    begin, until = last.span.begin - run.response.scenario.last_event_time, run["settling_time"]
-    test = np.array([begin, run.response.scenario.accumulation_time])
-    inside = (course.times >= begin) & (course.times <= until)
-    areas = [Area("steady error (3.9)", test, np.full(2, final[1]), np.full(2, final[0]), 2)]
-    for i in (0, 1):
-        x, y = _thin(course.times[inside], flows[inside, i], extent)
-        areas.append(Area("dynamic error (3.10)", x, np.full(len(x), final[i]), y, 4))
-    lines = [
-        thin_line(Line(label, course.times, flows[:, i], i), ERROR_WINDOW, extent)
-        for i, label in enumerate(("QL1", "QL2"))
-    ]
-    notes = (Note("ts", until, 4.55), Note("t_cum", float(test[1]), 4.55))
-    return Panel(
-        lines, "time after the step [s]", f"load flow [{FLOW_UNIT}]", TITLES[name], ERROR_WINDOW, extent,
-        notes=notes, areas=areas,
-    )  # fmt: skip
+def _shaded_flows(name: str, run: Run) -> Panel:
+    course = course_between(run.response, *ERROR_WINDOW)
+    final = (run["load_flow_1"] * FLOW_FACTOR, run["load_flow_2"] * FLOW_FACTOR)
+    areas = [_steady_area(run, final[1], final[0])]
+    lines = []
+    for i, label in enumerate(("QL1", "QL2")):
+        flow = course.flows[:, i] * FLOW_FACTOR
+        areas.append(_dynamic_area(run, course.times, flow, final[i]))
+        lines.append(Line(label, course.times, flow, i))
+    return _shaded(lines, areas, f"load flow [{FLOW_UNIT}]", TITLES[name], run)
 
 
-def _thin(x: FloatArray, y: FloatArray, extent: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
-    return thinned(x, y, ERROR_WINDOW, extent)
+def _shaded_difference(name: str, run: Run) -> Panel:
+    course = course_between(run.response, *ERROR_WINDOW)
+    difference = (course.flows[:, 0] - course.flows[:, 1]) * FLOW_FACTOR
+    final = (run["load_flow_1"] - run["load_flow_2"]) * FLOW_FACTOR
+    areas = [_steady_area(run, 0.0, final), _dynamic_area(run, course.times, difference, final)]
+    lines = [Line("QL1 − QL2", course.times, difference, 3)]
+    return _shaded(lines, areas, f"QL1 − QL2 [{FLOW_UNIT}]", TITLES[name], run)
+
+
+def _steady_area(run: Run, low: float, high: float) -> Area:
+    test = np.array([0.0, run.response.scenario.accumulation_time])
+    return Area("steady error (3.9)", test, np.full(2, low), np.full(2, high), 2)
+
+
+def _dynamic_area(run: Run, times: FloatArray, curve: FloatArray, final: float) -> Area:
+    after = np.flatnonzero(times >= 0.0)
+    after = after[times[after] <= run["settling_time"]]
+    after = after[np.argmax(times[after] > 0.0) - 1 :]  # of the two values at the step the later
+    x, y = thinned(times[after], curve[after], ERROR_WINDOW, (float(curve.min()), float(curve.max())))
+    return Area("dynamic error (3.10)", x, np.full(len(x), final), y, 4)
+
+
+def _shaded(lines: list[Line], areas: list[Area], y_label: str, title: str, run: Run) -> Panel:
+    panel = panel_over(lines, y_label, title, ERROR_WINDOW)
+    floor = float(min(line.y.min() for line in lines))
+    ends = (("ts", run["settling_time"]), ("t_cum", run.response.scenario.accumulation_time))
+    return replace(panel, areas=areas, notes=[Note(words, at, floor) for words, at in ends])

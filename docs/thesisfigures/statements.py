@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from claims.judgement import Statement
 from claims.sensitivity_section import CHAPTERS
 from claims.trends import TRENDS, Trend
+
 from thesisfigures.figure import Both, Row
 
 Judge = Callable[[Both], Sequence[Row]]

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-
 from claims.criteria import strong, tail
 from claims.judgement import Judgement, Statement
 from claims.runs import Runs, Sweep
+from modelpages.chart import Line, Panel, draw
+
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import Scenario
-from modelpages.chart import Line, Panel, draw
 from thesisfigures.figure import TITLES, Both
 
 AXES: Mapping[str, tuple[str, float, str]] = {

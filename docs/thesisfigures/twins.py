@@ -3,15 +3,15 @@
 from dataclasses import replace
 
 import numpy as np
-
 from claims.experiment import ASSUMED, CENTRED, Assumptions, respond_in_rig
 from claims.judgement import Answer, Judgement
 from claims.resolution import steady_bias
 from claims.trends import FIRST_TEST, POSITIONS, Trend, run_tests
-from divideropt.models.base import Outcome
+from modelpages.chart import Line, draw
+
+from divideropt.models.base import FloatArray, Outcome
 from divideropt.models.divider import rig
-from modelpages.chart import Line, Panel, draw
-from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, TimeCourse, course_between, thin_line
+from thesisfigures.courses import FLOW_FACTOR, FLOW_UNIT, TimeCourse, course_between, panel_over
 from thesisfigures.figure import Both
 from thesisfigures.statements import IN_RIG
 
@@ -22,10 +22,7 @@ VOLUMES = (ASSUMED, replace(ASSUMED, name="volumes × 100", volumes=100.0))
 """As assumed, and the slowest of what was tried: the volumes of the rig are not stated."""
 
 WINDOW = (-0.1, 0.4)
-"""What the flows are drawn over, after the step [s]."""
-
-SHORT_WINDOW = (-0.02, 0.08)
-"""The same of the pressures."""
+"""What they are drawn over, after the step [s]."""
 
 CLOSED, HALF_CLOSED = 0.1, 0.5
 """Flows have converged whose gap is this part of the largest after the step; by the second in part."""
@@ -34,50 +31,44 @@ PRESSURES = ((0, "Ps"), (1, "Pa1"), (2, "Pa2"))
 """States of Figure 4.5."""
 
 
-def draw_first_test(both: Both) -> str:
+def draw_first_test(_: Both) -> str:
     """Draw the twin of Figure 4.4: the load flows."""
-    del both
     panels = []
     for case in VOLUMES:
         lines = []
         for name, dash in zip(IN_RIG, ("solid", "dash"), strict=True):
             course = _first_test(name, case, WINDOW)
             lines += _flow_lines(course, tuple(f"{flow}, {name}" for flow in ("QL1", "QL2")), dash)
-        panels.append(_axes(lines, f"load flow [{FLOW_UNIT}]", case.name, WINDOW))
+        panels.append(panel_over(lines, f"load flow [{FLOW_UNIT}]", case.name, WINDOW))
     return draw(panels, "Load flows of the prototype in the rig after load 1 drops by 1.64 MPa")
 
 
-def draw_pressures(both: Both) -> str:
+def draw_pressures(_: Both) -> str:
     """Draw the twin of Figure 4.5: source, chamber and load difference pressures."""
-    del both
     panels = []
     for name in IN_RIG:
-        course = _first_test(name, ASSUMED, SHORT_WINDOW)
+        course = _first_test(name, ASSUMED, WINDOW)
         lines = [Line(label, course.times, course.states[:, i] * 1e-6, k) for k, (i, label) in enumerate(PRESSURES)]
         lines.append(Line("ΔPL = PL2 − PL1", course.times, _load_difference(course) * 1e-6, 3, "dash"))
-        panels.append(_axes(lines, "pressure [MPa]", name, SHORT_WINDOW))
+        panels.append(panel_over(lines, "pressure [MPa]", name, WINDOW))
     return draw(panels, "Pressures of the prototype in the rig after load 1 drops by 1.64 MPa")
 
 
-def draw_rotated(both: Both) -> str:
+def draw_rotated(_: Both) -> str:
     """Draw the twin of Figure 4.8: the load flows with the spool centred and turned."""
-    del both
     panels = []
     for name in IN_RIG:
         lines = []
         for position, dash in ((CENTRED, "solid"), (POSITIONS[0], "dash")):
-            response = respond_in_rig(
-                name, ASSUMED, rig.ROTATION_FIXED_DROP, rig.ROTATION_LOAD_DIFFERENCE, position
-            )
+            response = respond_in_rig(name, ASSUMED, rig.ROTATION_FIXED_DROP, rig.ROTATION_LOAD_DIFFERENCE, position)
             labels = tuple(f"{flow}, φ/φ₀ = {position:g}" for flow in ("QL1", "QL2"))
             lines += _flow_lines(course_between(response, *WINDOW), labels, dash)
-        panels.append(_axes(lines, f"load flow [{FLOW_UNIT}]", name, WINDOW))
+        panels.append(panel_over(lines, f"load flow [{FLOW_UNIT}]", name, WINDOW))
     return draw(panels, "Load flows of the prototype in the rig, the spool centred and turned")
 
 
-def what_was_assumed(both: Both) -> str:
+def what_was_assumed(_: Both) -> str:
     """Say what the twins rest on."""
-    del both
     drop, difference = FIRST_TEST
     return (
         f"The prototype of B.2 at Qs = {1e4 * rig.SOURCE_FLOW:.2f}×10⁻⁴ m³/s, {1e-3 * drop:.0f} kPa over the fixed "
@@ -88,12 +79,11 @@ def what_was_assumed(both: Both) -> str:
     )
 
 
-def how_far_turned(both: Both) -> str:
+def how_far_turned(_: Both) -> str:
     """Say at which angles the spool is drawn."""
-    del both
     return (
-        f"The thesis turns the spool “fully counter-clockwise at the end of the gear travel” and prints no angle; ours "
-        f"is turned to φ/φ₀ = {POSITIONS[0]:g}, the other end of what the statement is judged over being "
+        f"The thesis turns the spool “fully counter-clockwise at the end of the gear travel” and prints no angle; "
+        f"ours is turned to φ/φ₀ = {POSITIONS[0]:g}, the other end of what the statement is judged over being "
         f"{POSITIONS[-1]:g}."
     )
 
@@ -138,7 +128,8 @@ FIRST_TEST_FLOWS = (
     Trend(
         "settling to a steady state error of 1.23%",
         "Fig. 4.4",
-        "As assumed: yes if (3.5) is positive and its magnitude within the rig’s bias of 1.23 %, in part if only that.",
+        "As assumed: yes if (3.5) is positive and its magnitude within the rig’s bias of 1.23 %, in part if only "
+        "that.",
         _error_of_first_test,
     ),
     Trend(
@@ -165,16 +156,9 @@ def _first_test(formulation: str, case: Assumptions, window: tuple[float, float]
     return course_between(respond_in_rig(formulation, case, *FIRST_TEST), *window)
 
 
-def _load_difference(course: TimeCourse) -> np.ndarray:
+def _load_difference(course: TimeCourse) -> FloatArray:
     return np.asarray(course.states[:, 8] - course.states[:, 7])
 
 
 def _flow_lines(course: TimeCourse, labels: tuple[str, ...], dash: str) -> list[Line]:
     return [Line(labels[i], course.times, course.flows[:, i] * FLOW_FACTOR, i, dash) for i in (0, 1)]
-
-
-def _axes(lines: list[Line], y_label: str, title: str, window: tuple[float, float]) -> Panel:
-    low, high = min(float(line.y.min()) for line in lines), max(float(line.y.max()) for line in lines)
-    extent = (low - 0.05 * (high - low), high + 0.05 * (high - low))
-    thin = [thin_line(line, window, extent) for line in lines]
-    return Panel(thin, "time after the step [s]", y_label, title, window, extent)
