@@ -147,7 +147,7 @@ def test_errors_are_those_of_the_thesis_in_percent(data):
 def test_failed_designs_are_gaps_with_marks(data):
     part = data.parts[0]
     figure = quantity_figure(part, data.quantities["settling_time"])
-    line, crosses = figure.data
+    line, circles, crosses = figure.data
     ok = part.sweep.ok
     assert [value is None for value in line.y] == (~ok).tolist()
     assert line.connectgaps is False
@@ -155,12 +155,29 @@ def test_failed_designs_are_gaps_with_marks(data):
     assert all(y < min(v for v in line.y if v is not None) for y in crosses.y)
     for text, verdict in zip(crosses.text, [v for v in part.sweep.verdicts if not v.ok], strict=True):
         assert text.startswith(f"{verdict.outcome}: {verdict.text[:10]}")
+    values = part.sweep.quantities["settling_time"][~ok] * 1e3
+    np.testing.assert_allclose(np.array(circles.y, dtype=float), values, rtol=1e-4)
+    low, high = figure.layout.yaxis.range
+    assert low < min(crosses.y) < max(v for v in line.y if v is not None) < high, "circles do not stretch the scale"
     bands = [shape for shape in figure.layout.shapes if shape.type == "rect"]
     assert len(bands) == len(part.sweep.failures())
     for value in part.sweep.values[~ok] * 1e3:
         assert any(band.x0 - 1e-9 <= value <= band.x1 + 1e-9 for band in bands)
     for value in part.sweep.values[ok] * 1e3:
         assert not any(band.x0 <= value <= band.x1 for band in bands)
+
+
+def test_where_all_fail_all_that_is_defined_is_seen(data):
+    part = data.parts[0]
+    bad = replace(part, sweep=replace(part.sweep, verdicts=[Verdict(Outcome.UNSETTLED, "late")] * POINTS))
+    line, circles, _ = quantity_figure(bad, data.quantities["source_pressure"]).data
+    assert line.y == (None,) * POINTS
+    pressures = part.sweep.quantities["source_pressure"] / 1e6
+    np.testing.assert_allclose(np.array(circles.y, dtype=float), pressures, rtol=1e-4)
+    low, high = quantity_figure(bad, data.quantities["source_pressure"]).layout.yaxis.range
+    assert low < np.nanmin(pressures) and np.nanmax(pressures) < high
+    unknown = tuple(replace(e, relative=float("nan")) for e in part.effects)
+    assert moved(replace(bad, effects=unknown), data.quantities).startswith("not known")
 
 
 def test_the_campaigns_own_value_is_dotted(data):
@@ -186,10 +203,10 @@ def test_the_summary_says_range_effect_and_failures(data):
     groove, radius = table.rows
     sound = data.parts[1].sweep.sound("steady_state_error")
     effect = (sound.max() - sound.min()) / abs(data.base["steady_state_error"])
-    assert radius.cells[1].text == f"{sound.min():.3f} … {sound.max():.2f} ({100 * effect:.0f} %)"
-    assert radius.cells[-1].text == "none"
-    assert re.match(r"\d of 9 \(\d+ %\): unsettled (at|from) 0\.3", groove.cells[-1].text)
-    assert groove.cells[-1].text == failed_words(data.parts[0])
+    assert radius.cells[2].text == f"{sound.min():.3f} … {sound.max():.2f} ({100 * effect:.0f} %)"
+    assert radius.cells[1].text == "none"
+    assert re.match(r"\d of 9 \(\d+ %\): unsettled (at|from) 0\.3", groove.cells[1].text)
+    assert groove.cells[1].text == failed_words(data.parts[0])
     assert "unstable" in failed_words(data.parts[0])
 
 

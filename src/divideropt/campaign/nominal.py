@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign.sections import mistake
+from divideropt.models.uncertain import FAILED_SHARE
 
 if TYPE_CHECKING:
     from divideropt.campaign.config import Campaign, ConstraintConfig, ObjectiveConfig
@@ -44,7 +45,7 @@ def nominal_campaign(campaign: "Campaign") -> "Campaign":
 
     Returns:
         The same model, variables, strategies and goals, with the objectives and constraints on plain quantities of
-        the base scenario; what is asked of a named scenario alone is left out.
+        the base scenario; what is asked of a named scenario alone, or of the samples alone, is left out.
     """
     fields = type(campaign).model_fields
     update: dict[str, Any] = {
@@ -52,7 +53,8 @@ def nominal_campaign(campaign: "Campaign") -> "Campaign":
         for name, field in fields.items()
         if name not in {"name", *_SHARED}
     }
-    others = _scenarios(campaign)
+    scenarios = tuple(getattr(campaign.model, "scenarios", ()))
+    others = (*scenarios, FAILED_SHARE.name) if campaign.uncertainty is not None else scenarios
     objectives = _plain(campaign.objectives, "objectives", others)
     update |= {
         "name": campaign.name[: LONGEST_NAME - len(SUFFIX)] + SUFFIX,
@@ -60,7 +62,7 @@ def nominal_campaign(campaign: "Campaign") -> "Campaign":
         "constraints": _plain(campaign.constraints, "constraints", others),
         "reference_point": {name: value for name, value in campaign.reference_point.items() if name in objectives},
     }
-    if others:
+    if scenarios:
         update["model"] = campaign.model.model_copy(update={"scenarios": {}})
     return campaign.model_copy(update=update)
 
@@ -70,6 +72,7 @@ def nominal_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     if raw.get("nominal") is not True:
         return
     others = tuple(_mapping(_mapping(raw, "model"), "scenarios"))
+    others = others if raw.get("uncertainty") is None else (*others, FAILED_SHARE.name)
     objectives, constraints = _mapping(raw, "objectives"), _mapping(raw, "constraints")
     asked = [
         (str(name), section, entry)
@@ -79,13 +82,13 @@ def nominal_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     if not any(_is_named(name, others) or _gathers(entry, section) for name, section, entry in asked):
         sentence = (
             "no objective and no constraint is taken over scenarios or uncertainty, so the companion would be this "
-            "campaign again; delete `nominal`, or give an objective its `worst_of`"
+            "campaign again; delete `nominal`, or give an objective its `worst_of` or `statistic`"
         )
         yield mistake(("nominal",), sentence, at_key=True)
     elif objectives and all(_is_named(str(name), others) for name in objectives):
         sentence = (
-            "every objective is one named scenario's, so nothing is left for the companion to minimise; delete "
-            "`nominal`, or give an objective of the base scenario"
+            "every objective is one named scenario's, or the samples', so nothing is left for the companion to "
+            "minimise; delete `nominal`, or give an objective of the base scenario"
         )
         yield mistake(("nominal",), sentence, at_key=True)
 
@@ -103,12 +106,8 @@ def _gathers(entry: object, section: str) -> bool:
 
 
 def _is_named(quantity: str, others: tuple[str, ...]) -> bool:
-    """Whether a quantity is of a named scenario, not of the base one."""
+    """Whether a quantity is of a named scenario or of the samples, not of the base scenario."""
     return quantity.partition(".")[0] in others
-
-
-def _scenarios(campaign: "Campaign") -> tuple[str, ...]:
-    return tuple(getattr(campaign.model, "scenarios", ()))
 
 
 def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -17,7 +17,11 @@ from divideropt.problem import AGGREGATES, Problem
 from divideropt.report.display import axis_of
 from divideropt.store import Store
 
-_SCENARIO = re.compile(r"in scenario (\w+): ", re.ASCII)
+GOALS = "goal_attainment"
+"""In what a design is the best by max λ."""
+
+_SAMPLES = re.compile(r"in \d+ of \d+ samples: ", re.ASCII)
+_SCENARIO = re.compile(r"\bin scenario (\w+): ", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ class Best:
     Attributes:
         nominal: Whether of the companion's front; else of the campaign's.
         design_id: On that front.
-        reasons: In what: `goals`, or objectives by name.
+        reasons: In what: `GOALS`, or objectives by name.
         alone: What the companion's problem makes of it, None where that has not been simulated.
         whole: What the campaign's makes of it, likewise.
     """
@@ -194,7 +198,7 @@ def _bests(of_nominal: bool, alone: _Judged, whole: _Judged) -> Iterator[Best]:
         return
     found: dict[int, tuple[str, ...]] = {}
     if not np.isnan(own.attainment).any():
-        found[int(own.attainment.argmin())] = ("goals",)
+        found[int(own.attainment.argmin())] = (GOALS,)
     for name, row in zip(own.names, own.values.argmin(axis=0).tolist(), strict=True):
         found[row] = (*found.get(row, ()), name)
     for row, reasons in found.items():
@@ -227,8 +231,9 @@ def _objections(judged: _Judged, row: int) -> Iterator[tuple[str, str]]:
         return
     verdict = judged.verdicts[row]
     if not verdict.ok:
-        scenario = _SCENARIO.match(verdict.text)
-        yield str(verdict.outcome) + (f" in scenario {scenario[1]}" if scenario else ""), verdict.text
+        samples, scenario = _SAMPLES.match(verdict.text), _SCENARIO.search(verdict.text)
+        where = (" in samples" if samples else "") + (f" in scenario {scenario[1]}" if scenario else "")
+        yield f"{verdict.outcome}{where}", verdict.text
     elif np.isnan(judged.values[row]).any():
         yield "an objective is not defined", verdict.text
     bounds = list(_bounds(judged.problem))
@@ -260,11 +265,12 @@ def _volumes(
     alone, whole = reference_of(nominal.campaign), reference_of(own.campaign)
     if alone is None or whole is None:
         return None
-    first, second = (
-        (hypervolume(a.values[a.feasible], alone), hypervolume(w.values[w.feasible], whole))
-        for a, w in fronts.values()
-    )
+    first, second = ((_volume(a, alone), _volume(w, whole)) for a, w in fronts.values())
     return first, second
+
+
+def _volume(judged: _Judged, reference: FloatArray) -> float:
+    return hypervolume(judged.values[judged.feasible], reference)
 
 
 def _placed(of_nominal: bool, whole: _Judged) -> Iterator[Placed]:

@@ -18,7 +18,7 @@ BEYOND = 1.5
 FRONTS = {
     "robust": ("robust front", COLOURS[0], "circle"),
     "nominal": ("nominal front, feasible", COLOURS[1], "diamond"),
-    "broken": ("nominal front, not feasible", COLOURS[3], "x-thin-open"),
+    "broken": ("nominal front, not feasible", COLOURS[3], "x"),
 }
 """Words, colour and mark of each, by plotly's names."""
 
@@ -49,7 +49,7 @@ def _figure(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts) -> 
             y=y,
             name=words,
             mode="markers",
-            marker={"color": colour, "symbol": shape, "size": 7, "opacity": 0.8, "line": {"width": 1.5}},
+            marker={"color": colour, "symbol": shape, "size": 7, "opacity": 0.8},
             customdata=np.array(ids, dtype=object),
             hovertemplate=hover({"x": first, "y": second}),
         )

@@ -36,6 +36,7 @@ from divideropt.report.display import Axis, axis_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
+from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_table
 from divideropt.report.setting import setting_of
 from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.store import Store, TableSchema
@@ -99,6 +100,7 @@ class ReportData:
         choosing: Designs of the front that are worth a look; None without a front.
         leanings: The bounds that the front leans on.
         responses: The step responses; None for a model that has none.
+        scenarios: The best designs under each scenario; None where there is one, or no front.
         cost: The companion's front beside this; None where there is none, or nothing to compare yet.
         notes: Sentences on the state of the store.
         versions: Versions of libraries by name.
@@ -121,6 +123,7 @@ class ReportData:
     choosing: Choosing | None
     leanings: tuple[Leaning, ...]
     responses: Responses | None
+    scenarios: UnderScenarios | None
     cost: Cost | None
     notes: tuple[str, ...]
     versions: Mapping[str, str]
@@ -197,6 +200,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
+        read_scenarios(problem, table, worth_a_table(front, problem)),
         cost,
         _progress(facts, store) + notes + waiting,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},

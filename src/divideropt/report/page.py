@@ -23,6 +23,7 @@ from divideropt.report.figures import (
 from divideropt.report.front import Design
 from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.responses import Responses
+from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.sensitivity_figures import index_bars
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
@@ -78,6 +79,7 @@ def render_report(data: ReportData) -> str:
             "reasons": reasons_table(data),
             "volumes": volumes_table(data),
         },
+        scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
         number=number,
         verified_words=lambda design: verified_words(design, data),
@@ -126,7 +128,7 @@ def _cost_marks(data: ReportData) -> list[tuple[Mark, str, int]]:
     """The marks of the fronts in the figures of what robustness costs, with words and a count."""
     kinds = [kind_of(place) for place in data.cost.placed] if data.cost else []
     return [
-        (Mark(COLOURS.index(colour), shape.removesuffix("-thin-open")), words, kinds.count(kind))
+        (Mark(COLOURS.index(colour), shape), words, kinds.count(kind))
         for kind, (words, colour, shape) in FRONTS.items()
     ]
 

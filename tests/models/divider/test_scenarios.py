@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from divideropt.models.base import Outcome
+from divideropt.models.base import Outcome, Verdict
 from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step, solver_settings
 from divideropt.models.divider.quantities import GEOMETRIC
-from divideropt.models.divider.scenarios import BASE, Scenarios, Worst
+from divideropt.models.divider.scenarios import BASE, Scenarios, Worst, outcomes_by_scenario
 
 OTHER = Scenario(load_pressures=(5e6, 5e6), events=(load_step(2, 9e6),))
 MODELS = {BASE: Divider(), "low": Divider(scenario=OTHER)}
@@ -72,6 +72,19 @@ def test_a_scenario_that_fails_is_named_and_its_worst_is_not_known(design) -> No
     assert verdict.text.startswith("in scenario short: at the end a load flow")
     assert np.isnan(q["worst.settling_time"])
     assert np.isfinite(q["settling_time"])
+    assert outcomes_by_scenario(verdict, list(model.models)) == (Outcome.OK, Outcome.OK, Outcome.UNSETTLED)
+
+
+def test_what_is_known_of_each_scenario_follows_from_the_verdict() -> None:
+    scenarios = [BASE, "low", "short"]
+    assert outcomes_by_scenario(Verdict(Outcome.OK), scenarios) == (Outcome.OK,) * 3
+    own = Verdict(Outcome.AT_STOP, "the spool rests on its stop")
+    assert outcomes_by_scenario(own, scenarios) == (Outcome.AT_STOP, None, None)
+    low = Verdict(Outcome.UNSTABLE, "in scenario low: an equilibrium is unstable")
+    assert outcomes_by_scenario(low, scenarios) == (Outcome.OK, Outcome.UNSTABLE, None)
+    sampled = Verdict(Outcome.UNSTABLE, "in 3 of 64 samples: in scenario low: an equilibrium is unstable")
+    assert outcomes_by_scenario(sampled, scenarios) == (Outcome.OK,) * 3
+    assert outcomes_by_scenario(Verdict(Outcome.CRASHED, "the model broke down"), scenarios) == (Outcome.CRASHED,) * 3
 
 
 def test_the_reference_has_the_same_columns(design) -> None:

@@ -263,7 +263,9 @@
     const chosen = report.quantities[name];
     figure.data.forEach((trace, i) => { trace.y = chosen.y[i]; });
     for (const [key, axis] of Object.entries(figure.layout)) {
-      if (/^yaxis/.test(key) && axis.title) axis.title.text = chosen.label;
+      if (!/^yaxis/.test(key)) continue;
+      axis.range = [...chosen.range];
+      if (axis.title) axis.title.text = chosen.label;
     }
     figure.layout.uirevision = name; // what was zoomed is another's
     return redraw(figure);
