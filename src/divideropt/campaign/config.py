@@ -128,11 +128,13 @@ class ParallelConfig(Section):
 class VerificationConfig(Section):
     """Which front points `divideropt run` simulates again by the model's reference, and what counts as the same.
 
-    The extremes of each objective and the points nearest the goals always are; `divideropt verify` does all.
+    `divideropt verify` does all.
     """
 
     sample: Annotated[int, Field(strict=True, ge=0, le=10**6)] = 50
     """How many of the other points of the combined front, drawn at random with a fixed seed."""
+    extremes: Annotated[bool, Field(strict=True)] = True
+    """Whether the extremes of each objective and the points nearest the goals are."""
     tolerance: Annotated[float, Measure("%", POSITIVE)] = 1.0
     """Largest deviation of an objective from the reference's, of which it is a share."""
 
