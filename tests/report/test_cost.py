@@ -123,6 +123,15 @@ def test_the_table_has_a_row_for_each_judge(data):
         assert len(row.cells) == len(shown.headings)
 
 
+def test_the_companions_best_stands_scenario_by_scenario(folder, data):
+    best = next(b for b in data.cost.bests if b.nominal)
+    shown = data.scenarios.designs[-1]
+    assert (shown.design_id, shown.label) == (f"nominal/{best.design_id}", "nominal front, best in goal attainment")
+    row = table(folder, "beside").loc[best.design_id]
+    values = next(r.values for r in shown.rows if r.quantity.name == "steady_state_error")
+    assert values == pytest.approx(tuple(row[["steady_state_error", "turned.steady_state_error"]]), nan_ok=True)
+
+
 def test_the_page_draws_both_fronts_and_asks_for_nothing(data, opened):
     found = opened(render_report(data))
     quiet(found)

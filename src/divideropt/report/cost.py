@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pyarrow as pa
@@ -15,6 +15,7 @@ from divideropt.campaign.plan import reference_of
 from divideropt.models.base import FloatArray, Verdict
 from divideropt.problem import AGGREGATES, Problem
 from divideropt.report.display import axis_of
+from divideropt.report.scenarios import DesignUnder, read_scenarios
 from divideropt.store import Store
 
 GOALS = "goal_attainment"
@@ -94,6 +95,7 @@ class Cost:
         volumes: Hypervolume of the companion's front and of the campaign's, of the points that stand for each, in the
             companion's problem and in the campaign's; None without a reference point.
         placed: Designs of both fronts that have objectives in the campaign's problem.
+        under: The best of the companion's front under each scenario of the campaign; none where there is but one.
     """
 
     objectives: tuple[str, ...]
@@ -105,6 +107,7 @@ class Cost:
     bests: tuple[Best, ...]
     volumes: tuple[tuple[float, float], tuple[float, float]] | None
     placed: tuple[Placed, ...]
+    under: tuple[DesignUnder, ...]
 
 
 def read_cost(campaign: Campaign, store: Store) -> Cost | None:
@@ -125,13 +128,15 @@ def read_cost(campaign: Campaign, store: Store) -> Cost | None:
     if front is None:
         return None
     theirs, ours = nominal.points(), own.points()
+    known = own.known(theirs, nominal.schema)
     fronts = {
-        True: (_judged(nominal, theirs), _judged(own, own.known(theirs, nominal.schema))),
+        True: (_judged(nominal, theirs), _judged(own, known)),
         False: (_judged(nominal, nominal.known(ours, own.schema)), _judged(own, ours)),
     }
     there = fronts[True][1]
     if theirs.num_rows and not there.ids:
         return None
+    bests = tuple(best for of_nominal, (alone, whole) in fronts.items() for best in _bests(of_nominal, alone, whole))
     return Cost(
         tuple(campaign.objectives),
         theirs.num_rows,
@@ -139,9 +144,10 @@ def read_cost(campaign: Campaign, store: Store) -> Cost | None:
         len(there.ids),
         int(there.feasible.sum()),
         _reasons(there),
-        tuple(best for of_nominal, (alone, whole) in fronts.items() for best in _bests(of_nominal, alone, whole)),
+        bests,
         _volumes(own, nominal, fronts),
         tuple(place for of_nominal, (_, whole) in fronts.items() for place in _placed(of_nominal, whole)),
+        _under(own.problem, known, bests),
     )
 
 
@@ -168,6 +174,18 @@ class _Judged:
     verdicts: Sequence[Verdict]
     attainment: FloatArray
     problem: Problem
+
+
+def _under(problem: Problem, known: pa.Table, bests: Sequence[Best]) -> tuple[DesignUnder, ...]:
+    """Say what the best of the companion's front, by its goals where it has any, does under each scenario."""
+    first = next((best for best in bests if best.nominal), None)
+    if first is None:
+        return ()
+    label = f"nominal front, best in {', '.join(first.reasons).replace('_', ' ')}"
+    found = read_scenarios(problem, known, [(label, first.design_id)])
+    return (
+        tuple(replace(design, design_id=f"nominal/{design.design_id}") for design in found.designs) if found else ()
+    )
 
 
 def _judged(side: Side, table: pa.Table) -> _Judged:

@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
@@ -200,12 +200,17 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
-        read_scenarios(problem, table, worth_a_table(front, problem)),
+        _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
         cost,
         _progress(facts, store) + notes + waiting,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
         study_summary(store),
     )
+
+
+def _with_companion(under: UnderScenarios | None, cost: Cost | None) -> UnderScenarios | None:
+    """Put the best of the companion's front beside those of the campaign's, scenario by scenario."""
+    return under if under is None or cost is None else replace(under, designs=(*under.designs, *cost.under))
 
 
 def _front(
