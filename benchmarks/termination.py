@@ -94,7 +94,7 @@ def of_no_cost(run: Run, problem: Problem, objectives: int) -> float:
 def ruled(run: Run, window: int, gain: float) -> Run:
     """The run with a rule."""
     rule = {"stagnation": {"window": window, "gain": f"{gain} %"}}
-    return Run(run.name, run.strategy, run.options, run.seed, TerminationConfig.model_validate(rule))
+    return Run(run.name, run.strategy, run.options, run.seed, run.budget, TerminationConfig.model_validate(rule))
 
 
 if __name__ == "__main__":

@@ -7,9 +7,10 @@ import numpy as np
 
 from claims.criteria import falls, rises, shown, small, strong, tail, too_few
 from claims.judgement import Answer, Chapter, Judgement, Statement, all_of
-from claims.runs import RANGES, Runs
+from claims.runs import Runs
 from claims.slip import leakage_note
 from divideropt.models.divider.pilot import pilot_sides
+from divideropt.models.divider.study import THESIS_RANGES
 
 LARGE = 2.0
 """The error at the widest groove is large from this multiple of the base set's on."""
@@ -40,7 +41,7 @@ def _complex(runs: Runs) -> Judgement:
 
 def _small_when_narrow(runs: Runs) -> Judgement:
     sweep = runs.sweep("groove_width")
-    low, high = RANGES["groove_width"]
+    low, high = THESIS_RANGES["groove_width"]
     narrow = sweep.places <= low + (high - low) / 3
     parts = []
     for name in ("steady_state_error", "dynamic_error"):
@@ -54,7 +55,7 @@ def _small_when_narrow(runs: Runs) -> Judgement:
 
 
 def _bypass(runs: Runs) -> Judgement:
-    share = float(runs.sweep("groove_width", RANGES["groove_width"][1:]).results["pilot_share"][0])
+    share = float(runs.sweep("groove_width", THESIS_RANGES["groove_width"][1:]).results["pilot_share"][0])
     usual = runs.base()["pilot_share"]
     answer = Answer.YES if share >= LARGE_SHARE else Answer.NO
     if math.isnan(share):
@@ -63,7 +64,7 @@ def _bypass(runs: Runs) -> Judgement:
 
 
 def _large_when_wide(runs: Runs) -> Judgement:
-    widest = runs.sweep("groove_width", RANGES["groove_width"][1:])
+    widest = runs.sweep("groove_width", THESIS_RANGES["groove_width"][1:])
     error, usual = float(widest.results["steady_state_error"][0]), runs.base()["steady_state_error"]
     answer = Answer.YES if error >= LARGE * usual else Answer.IN_PART if error > usual else Answer.NO
     if math.isnan(error):
@@ -74,7 +75,7 @@ def _large_when_wide(runs: Runs) -> Judgement:
 
 def _perhaps_unstable(runs: Runs) -> Judgement:
     sweep = runs.sweep("groove_width")
-    low, high = RANGES["groove_width"]
+    low, high = THESIS_RANGES["groove_width"]
     wide = sweep.values >= high - (high - low) / 3
     margin = sweep.results["stability_margin"][wide]
     least = float(np.nanmin(margin))

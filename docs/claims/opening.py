@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from claims.criteria import BENT, STRAIGHT, ZERO_ERROR, falls, rises, small, strong, tail, too_few
+from claims.criteria import ZERO_ERROR, falls, off_line, rises, small, straight, strong, tail, too_few
 from claims.judgement import Answer, Chapter, Judgement, Statement, all_of
-from claims.runs import RANGES, Runs
+from claims.runs import Runs
+from divideropt.models.divider.study import THESIS_RANGES
 
 AXIS = (0.1 / 1.1, 0.12 / 1.1)
 """The longest settling time of Figure 3.21 [s]: its axis ends at 1.1 times that, its last tick (of 0.02) is 0.1."""
@@ -62,11 +63,10 @@ def _rim_dynamics(runs: Runs) -> Judgement:
 
 def _rim_linear(runs: Runs) -> Judgement:
     sweep = runs.sweep("rim_thickness")
-    error = sweep["flow_difference"]
-    line = np.polyval(np.polyfit(sweep.places, error, 1), sweep.places)
-    off = float(np.abs(error - line).max() / np.ptp(error))
-    answer = Answer.YES if off <= STRAIGHT else Answer.IN_PART if off <= BENT else Answer.NO
-    return too_few(sweep) or Judgement(answer, f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}")
+    off = off_line(sweep.places, sweep["flow_difference"])
+    return too_few(sweep) or Judgement(
+        straight(off), f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}"
+    )
 
 
 def _rim_to_zero(runs: Runs) -> Judgement:
@@ -85,7 +85,7 @@ def _rim_largest(runs: Runs) -> Judgement:
 
 def _thinnest(runs: Runs) -> float:
     """Return the magnitude of the error [%] at the thinnest rim of the author's range."""
-    return abs(float(runs.sweep("rim_thickness", RANGES["rim_thickness"][:1]).results["flow_difference"][0]))
+    return abs(float(runs.sweep("rim_thickness", THESIS_RANGES["rim_thickness"][:1]).results["flow_difference"][0]))
 
 
 OPENING = Chapter(

@@ -14,8 +14,9 @@ from claims.criteria import (
     too_few,
 )
 from claims.judgement import Answer, Chapter, Judgement, Statement
-from claims.runs import AUTHOR_STEP_TIME, RANGES, Runs, simulate
+from claims.runs import AUTHOR_STEP_TIME, Runs, simulate
 from divideropt.models.divider import Scenario, load_step, parameter_set
+from divideropt.models.divider.study import THESIS_RANGES
 
 OVER = 4.0
 """The error at 8 mm is over this [%]."""
@@ -109,7 +110,7 @@ def _zeros(runs: Runs, time: float) -> list[float]:
 
 def _start_note() -> str:
     """Say what the author's start does to the error at the largest radius."""
-    design = parameter_set("thesis_base") | {"spool_radius": RANGES["spool_radius"][1]}
+    design = parameter_set("thesis_base") | {"spool_radius": THESIS_RANGES["spool_radius"][1]}
     step = load_step(1, 15e6, at=AUTHOR_STEP_TIME)
     errors = []
     for end in (1.0, LONGER):

@@ -1,10 +1,8 @@
 """Runs of the base set for section 3.4, one parameter at a time, over the author's own ranges."""
 
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +19,7 @@ from divideropt.models.divider import (
     solver_settings,
 )
 from divideropt.models.divider.response import Response, respond
-
-POINTS = 100
-"""Points of a sweep, `nparam` of changeall.m."""
+from divideropt.models.divider.study import THESIS_POINTS, THESIS_RANGES
 
 AUTHOR_STEP_TIME = 0.6
 """When the load steps in changeall.m, after a cold start [s]."""
@@ -33,22 +29,6 @@ RTOL = 1e-6
 
 SETTINGS = solver_settings("LSODA", RTOL)
 """Those of every run."""
-
-RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {
-        "spool_radius": (8e-3, 20e-3),
-        "groove_width": (0.3e-3, 2e-3),
-        "radial_clearance": (1e-6, 20e-6),
-        "total_pressure_drop": (1e6, 10e6),
-        "fixed_drop_ratio": (0.1, 0.99),
-        "centred_opening": (0.2, 0.5),
-        "rim_thickness": (0.001e-3, 2e-3),
-        "coulomb_friction": (0.0, 10.0),
-        "kinematic_viscosity": (15e-6, 66e-6),
-        "groove_angle": (math.pi / 3, math.pi),
-    }
-)
-"""`range_m` of changeall.m, SI."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +94,7 @@ class Runs:
             values: SI; 100 over the author's range where not given.
             accumulation_time: t_cum [s].
         """
-        chosen = tuple(np.linspace(*RANGES[parameter], POINTS).tolist() if values is None else values)
+        chosen = tuple(np.linspace(*THESIS_RANGES[parameter], THESIS_POINTS).tolist() if values is None else values)
         key = (parameter, chosen, accumulation_time)
         if key not in self._sweeps:
             designs = [{parameter: value} for value in chosen]

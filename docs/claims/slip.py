@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from modelpages.runs import Run, run
 
-from claims.runs import RANGES
 from divideropt.models.divider import FORMULATIONS, parameter_set
 from divideropt.models.divider.formulations import Formulation
+from divideropt.models.divider.study import THESIS_RANGES
 
 
 def leakage_note() -> str:
@@ -37,6 +37,6 @@ def _ends(formulation: Formulation) -> tuple[Run, Run]:
     """Run both ends of the range of clearances, standard test, settled."""
     low, high = (
         run(parameter_set("thesis_base") | {"radial_clearance": clearance}, formulation)
-        for clearance in RANGES["radial_clearance"]
+        for clearance in THESIS_RANGES["radial_clearance"]
     )
     return low, high

@@ -6,8 +6,9 @@ import numpy as np
 
 from claims.criteria import SMALL, STRONG, falls, small, span, strong
 from claims.judgement import Answer, Chapter, Judgement, Statement, all_of
-from claims.runs import RANGES, Runs
+from claims.runs import Runs
 from divideropt.models.divider import PARAMETERS
+from divideropt.models.divider.study import THESIS_RANGES
 
 REMAINING_FACTOR = 2.5
 """Upper over lower end of each remaining parameter's range: the narrowest of the author's own (radius, opening)."""
@@ -18,7 +19,7 @@ REMAINING_POINTS = 9
 FEW = 0.25
 """In part: up to this part of the remaining parameters have a strong effect after all."""
 
-NOT_VARIED = frozenset(RANGES) - {"groove_angle"} | {"design_flow", "fixed_area_ratio", "groove_loss_factor"}
+NOT_VARIED = frozenset(THESIS_RANGES) - {"groove_angle"} | {"design_flow", "fixed_area_ratio", "groove_loss_factor"}
 """Those the statements before are about, two that say what the valve is for, and one the thesis does not have."""
 
 EFFECTS = ("steady_state_error", "dynamic_error", "settling_time", "source_pressure")
@@ -82,8 +83,8 @@ def remaining_effects(runs: Runs) -> list[tuple[str, str, float]]:
 
 
 def _range_of(name: str) -> tuple[float, ...]:
-    if name in RANGES:
-        low, high = RANGES[name]
+    if name in THESIS_RANGES:
+        low, high = THESIS_RANGES[name]
     else:
         root = math.sqrt(REMAINING_FACTOR)
         low, high = PARAMETERS[name].default / root, PARAMETERS[name].default * root

@@ -16,7 +16,9 @@ REFERENCE = np.array([1.0, 20.0])
 
 def watch(termination=None, budget=(10, 100), reference=REFERENCE):
     rules = None if termination is None else TerminationConfig.model_validate(termination)
-    return Watch(Run("nsga2-1", "nsga2", NSGA2(*budget), 1, rules), toy_problem(), reference)
+    return Watch(
+        Run("nsga2-1", "nsga2", NSGA2(*budget), 1, NSGA2(*budget).budget(3), rules), toy_problem(), reference
+    )
 
 
 def told(*points, feasible=True):

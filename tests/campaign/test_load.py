@@ -17,7 +17,7 @@ from divideropt.campaign.reader import read_document, read_text
 from divideropt.errors import FileMistakes, UsageError, printable
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import QUANTITIES
-from divideropt.strategies import STRATEGIES
+from divideropt.strategies import METHODS
 
 CAMPAIGNS = Path(__file__).parents[2] / "campaigns"
 FILES = [CAMPAIGNS / f"{name}.yaml" for name in ("quickstart", "thesis", "divider")]
@@ -43,7 +43,7 @@ def test_the_packaged_campaign_is_the_one_in_the_folder():
 
 def test_quickstart_is_quick():
     campaign = load_campaign(FILES[0])
-    assert sum(plan.options.budget * len(plan.seeds) for plan in campaign.strategies) * 0.005 < 20
+    assert sum(plan.options.budget(5) * len(plan.seeds) for plan in campaign.strategies) * 0.005 < 20
 
 
 def test_the_campaign_of_the_thesis_is_the_authors():
@@ -427,7 +427,7 @@ def test_the_schema_names_and_describes_everything():
     properties = campaign_schema()["properties"]
     assert properties["variables"]["properties"].keys() == PARAMETERS.keys()
     assert properties["objectives"]["properties"].keys() == {*QUANTITIES, "failed_share"}
-    assert properties["strategies"]["properties"].keys() == STRATEGIES.keys()
+    assert properties["strategies"]["properties"].keys() == METHODS.keys()
     for section in ("variables", "objectives", "constraints", "reference_point", "strategies"):
         assert all(entry["description"] for entry in properties[section]["properties"].values())
     assert "in m " in properties["variables"]["properties"]["spool_radius"]["description"]

@@ -57,6 +57,26 @@ strategies:
   nsga2: {population: 8, generations: 2}
 """
 
+OILS = """\
+name: oils
+model:
+  kind: divider
+  set: {kinematic_viscosity: 30 mm^2/s}
+  scenarios:
+    hot: {set: {kinematic_viscosity: 15 mm^2/s, bulk_modulus: 1.2e9 Pa}}
+    late: {events: [{load: 2, to: 12 MPa}, {load: 1, to: 12 MPa, at: 0.5 s}], set: {coulomb_friction: 2 N}}
+variables:
+  spool_radius: [6 mm, 16 mm]
+objectives:
+  load_regulation: {goal: 1 %, worst_of: all}
+  hot.dynamic_error: {goal: 0.5 mL}
+constraints:
+  stability_margin: {min: 0 1/s, worst_of: all}
+  late.event_1.settling_time: {max: 0.5 s}
+strategies:
+  nsga2: {population: 8, generations: 2}
+"""
+
 
 def mistakes(text):
     with pytest.raises(FileMistakes) as caught:
@@ -79,7 +99,7 @@ def test_events_are_read():
     assert [o.quantity.name for o in problem.objectives] == ["steady_state_error", "event_1.dynamic_error"]
 
 
-@pytest.mark.parametrize("text", [EVENTS, WORST])
+@pytest.mark.parametrize("text", [EVENTS, WORST, OILS])
 def test_resolved_campaigns_read_back_as_they_are(text):
     campaign = parse_campaign(text)
     written = dump_campaign(campaign)
@@ -107,6 +127,32 @@ def test_the_worst_of_scenarios_is_what_counts():
         ("least.stability_margin", 0.0, None),
         ("worst.stability_margin", None, 1000.0),
     ]
+
+
+def test_a_scenario_may_set_parameters():
+    campaign = parse_campaign(OILS)
+    problem = build_problem(campaign)
+    hot = {"kinematic_viscosity": pytest.approx(15e-6), "bulk_modulus": 1.2e9}
+    assert problem.model.changes == {"hot": hot, "late": {"coulomb_friction": 2.0}}
+    assert problem.fixed["kinematic_viscosity"] == pytest.approx(30e-6)
+    scenarios = YAML(typ="safe").load(dump_campaign(campaign))["model"]["scenarios"]
+    assert scenarios["late"]["set"] == {"coulomb_friction": "2.0 N"}
+    assert list(scenarios["hot"]["set"]) == ["kinematic_viscosity", "bulk_modulus"]
+
+
+def test_all_names_every_scenario():
+    campaign = parse_campaign(OILS)
+    every = ("scenario", "hot", "late")
+    assert campaign.objectives["load_regulation"].worst_of == every
+    assert campaign.constraints["stability_margin"].worst_of == every
+    assert build_problem(campaign).model.worst == (
+        Worst("load_regulation", every),
+        Worst("stability_margin", every, least=True),
+    )
+    written = YAML(typ="safe").load(dump_campaign(campaign))
+    assert written["objectives"]["load_regulation"]["worst_of"] == list(every)
+    alone = parse_campaign(OILS.replace("worst_of: all", "worst_of: [late, scenario, hot]"))
+    assert build_problem(alone).model.worst == build_problem(campaign).model.worst
 
 
 def test_the_order_of_scenarios_does_not_matter():
@@ -151,6 +197,21 @@ MISTAKES = {
     "unknown scenario": (WORST, ("[scenario, low]}", "[scenario, lov]}"), [(10, 54, "did you mean low?")]),
     "own name twice": (WORST, ("    low:", "    scenario:"), [(5, 5, "give this one another")]),
     "reserved name": (WORST, ("    low:", "    worst:"), [(5, 5, "already means something")]),
+    "a scenario called all": (WORST, ("    low:", "    all:"), [(5, 5, "already means something")]),
+    "another word than all": (OILS, ("1 %, worst_of: all", "1 %, worst_of: every"), [(11, 42, "nor all; write one")]),
+    "all and others": (OILS, ("1 %, worst_of: all", "1 %, worst_of: [all, hot]"), [(11, 43, "'all' is not known")]),
+    "a scenario sets a variable": (
+        OILS,
+        ("  spool_radius: [6", "  bulk_modulus: [1e9 Pa, 2e9 Pa]\n  spool_radius: [6"),
+        [(6, 49, "bulk_modulus is a variable, which no scenario can set")],
+    ),
+    "a scenario sets no parameter": (OILS, ("bulk_modulus: 1", "bulk_moduls: 1"), [(6, 49, "did you mean bulk_m")]),
+    "a scenario's parameter out of range": (OILS, ("15 mm^2/s", "-15 mm^2/s"), [(6, 38, "out of range")]),
+    "the standard test sets": (
+        OILS,
+        ("  scenarios:", "  scenario: {set: {coulomb_friction: 2 N}}\n  scenarios:"),
+        [(5, 14, "write these in `model.set`")],
+    ),
     "no name": (WORST, ("    low:", "    Low Load:"), [(5, 5, "cannot name a scenario")]),
     "not one quantity": (
         WORST,
@@ -191,4 +252,4 @@ def test_the_guide_is_right(example):
 
 
 def test_the_guide_has_its_examples():
-    assert len(EXAMPLES) == 3
+    assert len(EXAMPLES) == 5

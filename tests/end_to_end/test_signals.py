@@ -143,3 +143,28 @@ def test_a_signal_in_the_first_moments_shows_no_traceback_of_ours(tmp_path, mome
             assert process.returncode in {130, -signal.SIGINT}, words
             ours += process.returncode == 130
     assert ours >= moments // 4
+
+
+@pytest.mark.parametrize("after", [0.0, 0.3, 0.6])
+def test_workers_that_are_being_started_end_with_their_parent(tmp_path, after):
+    process = start(tmp_path, "way: hang_compiled, end: 1")
+    workers = []
+
+    def some_worker():
+        workers[:] = [pid for pid in descendants(process.pid) if b"popen_loky_posix" in command_of(pid)]
+        return workers
+
+    wait_until(some_worker, "no worker was started")
+    time.sleep(after)
+    processes = descendants(process.pid)
+    process.kill()
+    process.wait()
+    wait_until(lambda: not alive(processes), "a worker has outlived its parent")
+    process.communicate()
+
+
+def command_of(pid):
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return b""

@@ -71,6 +71,12 @@ def spheres_module() -> Iterator[None]:
     del sys.modules["report_spheres"]
 
 
+@pytest.fixture(scope="session", name="run_campaign")
+def campaign_runner() -> Callable[[str, Path], Store]:
+    """`run_campaign(text, folder)`: the store of a campaign that has run."""
+    return run_campaign
+
+
 def run_campaign(text: str, folder: Path) -> Store:
     runner = Runner(parse_campaign(text), folder, 1, io.StringIO())
     try:

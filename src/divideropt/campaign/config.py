@@ -2,17 +2,28 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeVar
 
-from pydantic import AfterValidator, Field, PlainValidator, ValidationInfo, WithJsonSchema, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
-from divideropt.campaign.plans import StrategyPlan, needs_goals, plans_schema, read_plans
+from divideropt.campaign.nominal import nominal_rules
+from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
-from divideropt.campaign.sections import Section, collect, mistake, show, together
+from divideropt.campaign.ranges import read_range
+from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
 from divideropt.campaign.uncertainty import (
     StatisticWord,
@@ -20,8 +31,10 @@ from divideropt.campaign.uncertainty import (
     check_uncertainty,
     uncertainty_rules,
 )
-from divideropt.campaign.worst_case import worst_case_rules
-from divideropt.models import Parameter, Quantity
+from divideropt.campaign.worst_case import named_scenarios, read_worst_of, worst_case_rules
+from divideropt.models import Quantity
+
+S = TypeVar("S", "ObjectiveConfig", "ConstraintConfig")
 
 MOST_WORKERS = 256
 """Beyond it a number of workers is a slip of the finger."""
@@ -53,8 +66,8 @@ class ObjectiveConfig(Section):
     """F* of (3.24), in the quantity's unit."""
     weight: Annotated[float, Measure("", POSITIVE)] = 1.0
     """w of (3.24)."""
-    worst_of: tuple[str, ...] = ()
-    """Scenarios over which the quantity's largest value counts, by name; `scenario` is the model's own."""
+    worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
+    """Scenarios over which the quantity's largest value counts; `scenario` is the model's own, `all` every one."""
     statistic: StatisticWord | None = None
     """Which statistic over the samples of `uncertainty` counts; without one the design as it is."""
 
@@ -66,8 +79,8 @@ class ConstraintConfig(Section):
     """Lower bound, in the quantity's unit."""
     max: Annotated[float, GivenMeasure()] | None = None
     """Upper bound, in the quantity's unit."""
-    worst_of: tuple[str, ...] = ()
-    """Scenarios in all of which the bounds are kept, by name; `scenario` is the model's own."""
+    worst_of: Annotated[tuple[str, ...], BeforeValidator(read_worst_of)] = ()
+    """Scenarios in all of which the bounds are kept; `scenario` is the model's own, `all` every one."""
     statistic: StatisticWord | None = None
     """Which statistic over the samples of `uncertainty` keeps them; without one the design as it is."""
 
@@ -171,28 +184,21 @@ def names_plugin(model: object) -> bool:
     return isinstance(model, Mapping) and isinstance(model.get("kind"), str) and ":" in model["kind"]
 
 
-def _range(parameter: Parameter, raw: object) -> tuple[float, float]:
-    if isinstance(raw, Mapping):
-        reserved = (
-            "`choices` and `step` are reserved" if {"choices", "step"} & raw.keys() else "a mapping is no range"
-        )
-        raise ValueError(f"{reserved}; write a range, [lower, upper]")
-    if not isinstance(raw, list | tuple) or len(raw) != 2:
-        raise ValueError(f"{show(raw)} is not a range; write two values, [lower, upper]")
-    ends = collect(dict(enumerate(raw)), (0, 1), "bound", lambda _, end: measure_of(parameter).read(end))
-    if ends[0] >= ends[1]:
-        raise ValueError(
-            f"the lower bound {show(raw[0])} is not below the upper, {show(raw[1])}; exchange or widen them"
-        )
-    return ends[0], ends[1]
-
-
 def _objective(quantity: Quantity, raw: object) -> ObjectiveConfig:
     return ObjectiveConfig.model_validate({} if raw is None else raw, context=measure_of(quantity))
 
 
 def _constraint(quantity: Quantity, raw: object) -> ConstraintConfig:
     return ConstraintConfig.model_validate(raw, context=measure_of(quantity))
+
+
+def _with_names(sections: Mapping[str, S], info: ValidationInfo) -> dict[str, S]:
+    """Name the scenarios of objectives or constraints that are over all."""
+    model = info.data.get("model")
+    return {
+        name: section.model_copy(update={"worst_of": named_scenarios(section.worst_of, model)})
+        for name, section in sections.items()
+    }
 
 
 def _reference_value(quantity: Quantity, raw: object) -> float:
@@ -230,19 +236,21 @@ class Campaign(Section):
     """What is optimised."""
     variables: Annotated[
         Mapping[str, tuple[float, float]],
-        PlainValidator(by_name("parameters", _range, least=1)),
+        PlainValidator(by_name("parameters", read_range, least=1)),
         WithJsonSchema(schemas.variables()),
     ]
     """Lower and upper bound of each parameter that varies, in its unit."""
     objectives: Annotated[
         Mapping[str, ObjectiveConfig],
         PlainValidator(by_name("quantities", _objective, least=1)),
+        AfterValidator(_with_names),
         WithJsonSchema(schemas.objectives()),
     ]
     """What is minimised."""
     constraints: Annotated[
         Mapping[str, ConstraintConfig],
         PlainValidator(by_name("quantities", _constraint)),
+        AfterValidator(_with_names),
         WithJsonSchema(schemas.constraints()),
     ] = Field(default_factory=dict)
     """What a feasible design keeps."""
@@ -254,10 +262,14 @@ class Campaign(Section):
     """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    nominal: Annotated[bool, Field(strict=True)] = False
+    """Whether a companion without scenarios and uncertainty runs too, to say what these cost."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
     optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
     """How near to stationary front points are; 200 points by the valve's compiled solver, none where that is dear."""
+    sensitivity: SensitivityConfig = SensitivityConfig()
+    """What `divideropt sensitivity` varies, and how it samples that."""
     parallel: ParallelConfig = ParallelConfig()
     """How the work is spread."""
 
@@ -265,12 +277,15 @@ class Campaign(Section):
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say what does not fit together between sections."""
         fixed = _section(_section(raw, "model"), "set")
-        for name in _section(raw, "variables"):
+        varying = () if is_study(_section(raw, "strategies")) else _section(raw, "variables")
+        for name in varying:
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
                 yield mistake(("variables", name), sentence, at_key=True)
+        yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
         yield from uncertainty_rules(raw)
+        yield from nominal_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():
@@ -278,6 +293,16 @@ class Campaign(Section):
             if aggregating and given is None:
                 sentence = f"{name} has no goal, by which {aggregating} weighs the objectives; give one, {{goal: …}}"
                 yield mistake(("objectives", name), sentence, at_key=True)
+
+
+def _scenario_set_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
+    """Say which variables a scenario sets, so that they would vary in some of the simulations only."""
+    scenarios, variables = _section(_section(raw, "model"), "scenarios"), _section(raw, "variables")
+    for scenario in scenarios:
+        for name in _section(_section(scenarios, scenario), "set"):
+            if name in variables:
+                sentence = f"{name} is a variable, which no scenario can set; delete it here, or from `variables`"
+                yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
 
 
 def _section(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -17,6 +17,7 @@ from joblib.externals.loky.backend import resource_tracker
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from divideropt.campaign.mishaps import RESTARTS
+from divideropt.campaign.parentage import end_with_parent
 
 T = TypeVar("T")
 
@@ -118,7 +119,7 @@ class LokyCrew(Crew):
         """
         with self._starting:
             before = set(_semaphores())
-            executor = ProcessPoolExecutor(1, env=_ONE_THREAD, initializer=_stay)
+            executor = ProcessPoolExecutor(1, env=_ONE_THREAD, initializer=_stay, initargs=(os.getpid(),))
             self._executors.append(executor)
             ready = executor.submit(os.getpid)
             named = set(_semaphores()) - before
@@ -139,11 +140,13 @@ def _leave_signals_to_main_thread() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
 
 
-def _stay() -> None:
-    """Keep loky from replacing this worker when it has grown by 300 MB, which imports and compiled code may make.
+def _stay(parent: int) -> None:
+    """End with the parent, also one that has died while this worker was being started; else stay.
 
-    Its successor would look for semaphores that have no names any more.
+    loky would replace a worker that has grown by 300 MB, which imports and compiled code may make; its successor
+    would look for semaphores that have no names any more.
     """
+    end_with_parent(parent)
     process_executor._USE_PSUTIL = False
 
 

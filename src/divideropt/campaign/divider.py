@@ -7,8 +7,8 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
 from divideropt.campaign import schemas
-from divideropt.campaign.fields import POSITIVE, Measure, OneOf, Tables, by_name, measure_of
-from divideropt.campaign.scenario import MOST_EVENTS, ScenarioConfig
+from divideropt.campaign.fields import POSITIVE, Measure, OneOf, Tables
+from divideropt.campaign.scenario import MOST_EVENTS, NamedScenarioConfig, ParameterValues, ScenarioConfig
 from divideropt.campaign.sections import Section, collect, mistake, show, together
 from divideropt.models import Domain
 from divideropt.models.divider.formulations import FORMULATIONS
@@ -47,8 +47,9 @@ def divider_tables(model: object) -> Tables:
 
 def _measured(scenario: object) -> tuple[int, ...]:
     """The events of a scenario as written that have metrics; of a wrong one all that it seems to have."""
+    happens = {key: v for key, v in scenario.items() if key != "set"} if isinstance(scenario, Mapping) else scenario
     try:
-        return ScenarioConfig.model_validate(scenario or {}).to_scenario().measured_events
+        return ScenarioConfig.model_validate(happens or {}).to_scenario().measured_events
     except ValueError:  # has its own mistakes
         events = scenario.get("events") if isinstance(scenario, Mapping) else None
         return tuple(range(1, len(events[:MOST_EVENTS]))) if isinstance(events, list | tuple) else ()
@@ -76,7 +77,7 @@ def _few_scenarios(scenarios: object) -> object:
     return scenarios
 
 
-def _named(scenarios: Mapping[str, ScenarioConfig]) -> Mapping[str, ScenarioConfig]:
+def _named(scenarios: Mapping[str, NamedScenarioConfig]) -> Mapping[str, NamedScenarioConfig]:
     found = [mistake((name,), sentence, at_key=True) for name in scenarios for sentence in _objections_to(name)]
     if found:
         raise together(found)
@@ -87,7 +88,7 @@ def _objections_to(name: str) -> Iterator[str]:
     if name == BASE:
         yield f"{BASE!r} is the name of the scenario above; give this one another"
     elif name in schemas.RESERVED_NAMES or name.startswith("event_"):
-        yield f"{show(name)} already means something in a column's name; give the scenario another"
+        yield f"{show(name)} already means something else; give the scenario another"
     elif not _SCENARIO_NAME.fullmatch(name):
         yield f"{show(name)} cannot name a scenario; use 1 to 32 of a-z, 0-9 and _, a letter first"
 
@@ -123,18 +124,14 @@ class DividerConfig(Section):
     """Which reading of the thesis's equations."""
     parameters: Annotated[str, OneOf("parameter set", PARAMETER_SETS)] = "thesis_base"
     """The parameter set to begin with."""
-    set: Annotated[
-        Mapping[str, float],
-        PlainValidator(by_name("parameters", lambda parameter, raw: measure_of(parameter).read(raw))),
-        WithJsonSchema(schemas.parameters()),
-    ] = Field(default_factory=dict)
+    set: ParameterValues = Field(default_factory=dict)
     """Parameters that differ from the set."""
     groove_loss: Annotated[str, OneOf("groove loss", _LOSSES)] = "none"
     """What a pilot groove's entrance and exit take off its pressure drop."""
     scenario: ScenarioConfig = Field(default_factory=ScenarioConfig)
     """What happens to the valve."""
     scenarios: Annotated[
-        Mapping[str, ScenarioConfig],
+        Mapping[str, NamedScenarioConfig],
         BeforeValidator(_few_scenarios),
         AfterValidator(_named),
         Field(
@@ -152,6 +149,10 @@ class DividerConfig(Section):
     def base_parameters(self) -> dict[str, float]:
         """Return every parameter by name, SI, as each design has it but for the variables."""
         return parameter_set(self.parameters) | dict(self.set)
+
+    def changes(self) -> dict[str, dict[str, float]]:
+        """Return what each scenario sets, by its name and the parameter's, SI; only of those that set something."""
+        return {name: dict(scenario.set) for name, scenario in self.scenarios.items() if scenario.set}
 
     def tables(self) -> Tables:
         """Return the model's parameters and quantities by name."""

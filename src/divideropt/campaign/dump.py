@@ -29,10 +29,10 @@ def dump_campaign(campaign: Campaign) -> str:
     data = campaign.model_dump(mode="json", exclude_none=True, exclude={"model", *_BY_NAME})
     data["model"] = campaign.model.model_dump(mode="json", exclude_none=True)
     data["model"]["set"] = _measures(campaign.model.set, parameters)
-    data["variables"] = {
-        name: [measure_of(parameters[name]).write(bound) for bound in bounds]
-        for name, bounds in campaign.variables.items()
-    }
+    for scenario in data["model"].get("scenarios", {}).values():
+        scenario["set"] = _measures(scenario["set"], parameters)
+    data["variables"] = _ranges(campaign.variables, parameters)
+    data["sensitivity"]["parameters"] = _ranges(campaign.sensitivity.parameters, parameters)
     data["objectives"] = _sections(campaign.objectives, quantities)
     data["constraints"] = _sections(campaign.constraints, quantities)
     data["reference_point"] = _measures(campaign.reference_point, quantities)
@@ -60,6 +60,10 @@ _BY_NAME = ("variables", "objectives", "constraints", "reference_point", "uncert
 
 def _measures(values: Mapping[str, float], table: Mapping[str, Any]) -> dict[str, str | float]:
     return {name: measure_of(table[name]).write(value) for name, value in values.items()}
+
+
+def _ranges(ranges: Mapping[str, tuple[float, float]], table: Mapping[str, Any]) -> dict[str, list[str | float]]:
+    return {name: [measure_of(table[name]).write(end) for end in ends] for name, ends in ranges.items()}
 
 
 def _sections(

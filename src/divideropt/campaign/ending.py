@@ -85,7 +85,7 @@ class Watch:
 
     def no_more(self) -> Ended:
         """Say how a run ends whose strategy asks for no more."""
-        budget = self._run.options.budget
+        budget = self._run.budget
         rest = budget - self._count
         if rest == 0:
             return Ended(Reason.BUDGET, f"its budget of {budget} evaluations is spent", self._count)
@@ -119,7 +119,7 @@ def kept_ending(store: Store, run: Run, evaluations: int) -> Ended | None:
 
 def _asked(run: Run) -> dict[str, Any]:
     rules = run.termination
-    return {"budget": run.options.budget, "termination": None if rules is None else rules.as_written()}
+    return {"budget": run.budget, "termination": None if rules is None else rules.as_written()}
 
 
 class _Growth:

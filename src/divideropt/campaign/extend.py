@@ -3,7 +3,7 @@
 A `termination` may change too, as long as no logged run would have ended by it before the last of its evaluations:
 loosened or deleted, the runs go on; tightened, those that have gone further are in the way.
 
-What touches no evaluation, `verification`, `optimality` and `parallel`, may be changed at will; and
+What touches no evaluation, `verification`, `optimality`, `nominal` and `parallel`, may be changed at will; and
 `model.deadline`, which counts for designs that are not yet logged.
 """
 
@@ -19,7 +19,7 @@ from divideropt.errors import StoreError
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 
-BUDGETS = ("generations", "evaluations")
+BUDGETS = ("generations", "evaluations", "trajectories", "samples")
 """Options that may grow."""
 
 PROBLEM = ("model", "variables", "objectives", "constraints", "reference_point", "uncertainty")
@@ -44,8 +44,9 @@ def check_extends(stored: Campaign, asked: Campaign, where: object) -> None:
         raise StoreError(
             f"{where}: this store belongs to another campaign:\n  "
             + "\n  ".join(differences)
-            + "\nOnly generations, evaluations, seeds and strategies may be added, and a termination changed; name "
-            "another folder (--store), or start anew (--fresh, which moves the old store aside)."
+            + "\nOnly generations, evaluations, trajectories, samples, seeds and strategies may be added, and a "
+            "termination changed; name another folder (--store), or start anew (--fresh, which moves the old store "
+            "aside)."
         )
 
 

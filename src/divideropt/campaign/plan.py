@@ -28,6 +28,7 @@ class Run:
         strategy: The strategy's name.
         options: The strategy.
         seed: Its seed.
+        budget: Most evaluations it asks for.
         termination: By which rules it ends before its budget is spent; None by none.
     """
 
@@ -35,13 +36,15 @@ class Run:
     strategy: str
     options: Strategy
     seed: int
+    budget: int
     termination: TerminationConfig | None = None
 
 
 def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
     """List the runs, in the campaign's order."""
+    variables = len(campaign.variables)
     return tuple(
-        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.termination)
+        Run(f"{plan.name}-{seed}", plan.name, plan.options, seed, plan.options.budget(variables), plan.termination)
         for plan in campaign.strategies
         for seed in plan.seeds
     )
@@ -62,7 +65,7 @@ def _certain_model(campaign: Campaign) -> Model:
         for name, scenario in config.all_scenarios().items()
     }
     worst = worst_cases(campaign)
-    return Scenarios(models, worst) if worst or len(models) > 1 else models[BASE]
+    return Scenarios(models, worst, config.changes()) if worst or len(models) > 1 else models[BASE]
 
 
 def dividers(model: Model) -> Mapping[str, Divider]:

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 from divideropt.campaign.reader import MOST_MISTAKES
 from divideropt.campaign.sections import collect, mistake, relay, show, together, unknown
 from divideropt.campaign.termination import TerminationConfig, termination_schema
-from divideropt.strategies import STRATEGIES, Strategy
+from divideropt.strategies import METHODS, SAMPLINGS, STRATEGIES, Strategy
 
 LARGEST_SEED = 2**32 - 1
 """What NumPy's oldest generators take."""
@@ -21,7 +21,7 @@ class StrategyPlan:
     """A strategy as a campaign wants it run.
 
     Attributes:
-        name: A key of `STRATEGIES`.
+        name: A key of `METHODS`.
         options: The strategy with its options.
         seeds: One run each, in this order.
         termination: By which rules they end before their budget is spent; None by none.
@@ -31,6 +31,12 @@ class StrategyPlan:
     options: Strategy
     seeds: tuple[int, ...]
     termination: TerminationConfig | None = None
+
+    @property
+    def window(self) -> int | None:
+        """Evaluations over which its termination looks for stagnation, None where it does not."""
+        stagnation = None if self.termination is None else self.termination.stagnation
+        return None if stagnation is None else stagnation.window
 
     def as_written(self) -> dict[str, Any]:
         """Return options, seeds and termination as a campaign's file has them."""
@@ -42,7 +48,7 @@ class StrategyPlan:
 
 def read_plans(value: object) -> tuple[StrategyPlan, ...]:
     """Read the section; raises ValueError or ValidationError with every mistake."""
-    plans = tuple(collect(value, STRATEGIES, "strategy", _plan).values())
+    plans = tuple(collect(value, METHODS, "strategy", _plan).values())
     if not plans:
         raise ValueError(f"there is no strategy here; name at least one of {', '.join(STRATEGIES)}")
     return plans
@@ -53,7 +59,7 @@ def plans_schema() -> dict[str, Any]:
     return {
         "type": "object",
         "description": "Which methods run, by name.",
-        "properties": {name: _plan_schema(strategy) for name, strategy in STRATEGIES.items()},
+        "properties": {name: _plan_schema(strategy) for name, strategy in METHODS.items()},
         "additionalProperties": False,
         "minProperties": 1,
     }
@@ -61,7 +67,15 @@ def plans_schema() -> dict[str, Any]:
 
 def needs_goals(name: str) -> bool:
     """Whether a strategy of that name makes one objective of several, by their goals."""
-    return "aggregate" in _option_names(STRATEGIES[name]) if name in STRATEGIES else False
+    return "aggregate" in _option_names(METHODS[name]) if name in METHODS else False
+
+
+def is_study(strategies: Mapping[str, object]) -> bool:
+    """Whether strategies, by name, only lay designs out, as those of a sensitivity study do.
+
+    Then a variable may have a value in `model.set` too: that from which the others are varied.
+    """
+    return bool(strategies) and all(name in SAMPLINGS for name in strategies)
 
 
 _BESIDES = ("seeds", "termination")
@@ -90,7 +104,7 @@ def _plan(name: str, raw: object) -> StrategyPlan:
     if raw is not None and not isinstance(raw, Mapping):
         raise ValueError(f"{show(raw)} is not a mapping; write options in braces, such as {name}: {{seeds: [1]}}")
     given = dict(raw or {})
-    known = _option_names(STRATEGIES[name])
+    known = _option_names(METHODS[name])
     found = [
         mistake((key,), unknown("option", key, [*known, *_BESIDES]), at_key=True)
         for key in list(given)[:MOST_MISTAKES]
@@ -103,7 +117,7 @@ def _plan(name: str, raw: object) -> StrategyPlan:
     except ValidationError as error:
         found += relay(error, ("seeds",))
     try:
-        options = cast(Any, STRATEGIES[name])(**{key: given[key] for key in known if key in given})
+        options = cast(Any, METHODS[name])(**{key: given[key] for key in known if key in given})
     except ValidationError as error:
         found += relay(error)
     termination: TerminationConfig | None = None
@@ -112,14 +126,6 @@ def _plan(name: str, raw: object) -> StrategyPlan:
             termination = TerminationConfig.model_validate(given["termination"])
     except ValidationError as error:
         found += relay(error, ("termination",))
-    if options is not None and termination is not None and termination.stagnation is not None:
-        window, budget = termination.stagnation.window, options.budget
-        if window >= budget:
-            sentence = (
-                f"{window} is too large for a budget of {budget} evaluations, within which it would never end a run; "
-                "give a smaller window, or a larger budget"
-            )
-            found.append(mistake(("termination", "stagnation", "window"), sentence))
     if found:
         raise together(found)
     return StrategyPlan(name, options, seeds, termination)

@@ -1,6 +1,7 @@
 """Runs a campaign: its runs in parallel, then the fronts, of whose points some are verified and explored around."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
@@ -99,6 +100,31 @@ class Runner:
         """
         problem = build_problem(self._campaign)
         verifier = Verifier(self._campaign, problem, self._store, self._words, self._interruption)
+        with self._working(problem, fresh) as crew:
+            for kept in (self._store.verification, self._store.optimality):
+                kept(verifier.schema).table()  # damage is said before hours are spent, not after
+            failures = self._drive(problem, crew)
+            return self._write_fronts(problem, verifier, crew, failures)
+
+    def sample(self, *, fresh: bool = False) -> Mapping[str, str]:
+        """Run what is not yet in the store, and make nothing of it: the designs of a study are no candidates.
+
+        Args:
+            fresh: Whether to move an existing store aside first.
+
+        Returns:
+            Why runs were given up, by their names; empty where all came to their end.
+
+        Raises:
+            DivideroptError: As `run` does, but for what comes after the runs.
+        """
+        problem = build_problem(self._campaign)
+        with self._working(problem, fresh) as crew:
+            return self._drive(problem, crew)
+
+    @contextmanager
+    def _working(self, problem: Problem, fresh: bool) -> Iterator[Crew | None]:
+        """Hold the store, made ready for the campaign, and have workers until this is left."""
         aside = self._store.move_aside() if fresh else None
         if aside is not None:
             say(f"the old store is now {aside}", self._words)
@@ -107,14 +133,9 @@ class Runner:
             changed = self._store.keep_fingerprint()
             if changed is not None:
                 say(changed, self._words)
-            for kept in (self._store.verification, self._store.optimality):
-                kept(verifier.schema).table()  # damage is said before hours are spent, not after
             with hired(self._campaign.parallel, self._workers, self._store.folder) as crew:
                 warm_up(problem)
-                endings = self._drive(problem, crew)
-                self._raise_first(endings)
-                failures = {ending.run: ending.failure for ending in endings if ending.failure is not None}
-                return self._write_fronts(problem, verifier, crew, failures)
+                yield crew
 
     def _take_campaign(self, problem: Problem) -> None:
         """Check that the store is this campaign's, and write down what it has become."""
@@ -130,7 +151,13 @@ class Runner:
             )
         self._store.write_campaign(self._text)
 
-    def _drive(self, problem: Problem, crew: Crew | None) -> list[Ending]:
+    def _drive(self, problem: Problem, crew: Crew | None) -> Mapping[str, str]:
+        """Do the runs; return why some were given up, by their names."""
+        endings = self._endings(problem, crew)
+        self._raise_first(endings)
+        return {ending.run: ending.failure for ending in endings if ending.failure is not None}
+
+    def _endings(self, problem: Problem, crew: Crew | None) -> list[Ending]:
         runs = plan_runs(self._campaign)
         folder = self._store.status_folder
         with disk_errors(folder):
@@ -153,7 +180,7 @@ class Runner:
         def attempt(run: Run) -> Ending:
             return crew.call(work_as_process, self._text, self._store.absolute(), run)
 
-        longest = sorted(runs, key=lambda run: run.options.budget, reverse=True)
+        longest = sorted(runs, key=lambda run: run.budget, reverse=True)
         waiting = [crew.submit(self._persist, attempt, run, display) for run in longest]
         return [ending.result() for ending in waiting]
 

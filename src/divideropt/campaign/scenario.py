@@ -5,11 +5,11 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign import schemas
-from divideropt.campaign.fields import POSITIVE, Measure, OneOf
+from divideropt.campaign.fields import POSITIVE, Measure, OneOf, by_name, measure_of
 from divideropt.campaign.sections import Section, mistake, together
 from divideropt.models import Domain
 from divideropt.models.divider.scenario import INSTANT, Event, Scenario, load_step
@@ -129,6 +129,9 @@ class ScenarioConfig(Section):
         """Refuse too many events before each is judged, and take an explicit null for what is not given."""
         if not isinstance(raw, Mapping):
             return raw
+        if "set" in raw and "set" not in cls.model_fields:
+            sentence = "only one of `model.scenarios` sets parameters of its own; write these in `model.set`"
+            raise together([mistake(("set",), sentence, at_key=True)])
         events = raw.get("events")
         if isinstance(events, list | tuple) and len(events) > MOST_EVENTS:
             sentence = f"the list has {len(events)} values; write at most {MOST_EVENTS}"
@@ -159,6 +162,21 @@ class ScenarioConfig(Section):
             return
         yield from _order_rules(timeline)
         yield from _end_rules(raw, timeline[-1], cold)
+
+
+ParameterValues = Annotated[
+    Mapping[str, float],
+    PlainValidator(by_name("parameters", lambda parameter, raw: measure_of(parameter).read(raw))),
+    WithJsonSchema(schemas.parameters()),
+]
+"""Parameters by name, each in its unit."""
+
+
+class NamedScenarioConfig(ScenarioConfig):
+    """One of several scenarios, in which the valve may meet another oil."""
+
+    set: ParameterValues = Field(default_factory=dict)
+    """Parameters that differ in this scenario from those of every other."""
 
 
 def _step_rules(raw: Mapping[str, Any], cold: bool) -> Iterator[InitErrorDetails]:

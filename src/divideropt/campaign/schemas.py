@@ -25,6 +25,11 @@ def variables() -> Schema:
     return _mapping("What varies, and between which bounds.", {p.name: _range(p) for p in PARAMETERS.values()}, 1)
 
 
+def study() -> Schema:
+    """Ranges of parameters in a study."""
+    return _mapping("What is studied, and between which ends.", {p.name: _range(p) for p in PARAMETERS.values()})
+
+
 def objectives() -> Schema:
     """Goals and weights of quantities."""
     return _prefixable(_mapping("What is minimised.", _each(_objective), 1))
@@ -122,8 +127,11 @@ def _given(name: str) -> Schema:
     return {"type": "object", "required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
-RESERVED_NAMES = ("worst", "least")
-"""What a column's name may begin with already."""
+EVERY = "all"
+"""Stands for every scenario of a campaign, under `worst_of`."""
+
+RESERVED_NAMES = ("worst", "least", EVERY)
+"""What no scenario is called: what a column's name may begin with already, and what stands for every scenario."""
 
 
 def scenario_name() -> str:
@@ -185,10 +193,10 @@ def _statistic() -> Schema:
 
 
 def _worst_of() -> Schema:
+    description = f"Scenarios of which the worst counts: names of `model.scenarios`, or `scenario`; or `{EVERY}`."
     return {
-        "type": "array",
-        "description": "Scenarios of which the worst counts: names of `model.scenarios`, or `scenario`.",
-        "items": {"type": "string"},
+        "description": description,
+        "anyOf": [{"const": EVERY}, {"type": "array", "items": {"type": "string"}}],
     }
 
 

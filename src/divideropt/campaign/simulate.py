@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from divideropt.campaign.config import Campaign
+from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.plan import build_model, dividers
 from divideropt.errors import UsageError
 from divideropt.models import Outcome, Verdict
@@ -101,7 +102,14 @@ def chosen_design(campaign: Campaign, settings: Sequence[str], scenario: str) ->
     twice = [name for name, count in Counter(name for name, _ in given).items() if count > 1]
     if twice:
         raise UsageError(f"--set {twice[0]}: given more than once; say it once")
-    return model, campaign.model.base_parameters() | dict(given)
+    return model, _parameters_under(campaign, scenario) | dict(given)
+
+
+def _parameters_under(campaign: Campaign, scenario: str) -> dict[str, float]:
+    """Every parameter of a campaign as one of its scenarios has it, by name, SI."""
+    config = campaign.model
+    changes = config.changes() if isinstance(config, DividerConfig) else {}
+    return config.base_parameters() | changes.get(scenario, {})
 
 
 def _table(response: Response) -> pd.DataFrame:

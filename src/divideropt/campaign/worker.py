@@ -103,7 +103,7 @@ def work(campaign: Campaign, problem: Problem, store: Store, run: Run, simulate:
     """
     stop = store.status_folder / STOP_FILE
     reference = reference_of(campaign)
-    reporter = Reporter(store.status_folder / f"{run.name}.json", run.name, run.options.budget, problem, reference)
+    reporter = Reporter(store.status_folder / f"{run.name}.json", run.name, run.budget, problem, reference)
     mishaps, gone = Mishaps(store.status_folder, run.name), abandoned()
     try:
         with store.writing_run(run.name), _surviving(mishaps) as died:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import InitErrorDetails
 
-from divideropt.campaign.sections import Loc, mistake, unknown
+from divideropt.campaign.schemas import EVERY
+from divideropt.campaign.sections import Loc, mistake, show, unknown
 from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.scenarios import BASE, Worst
 
@@ -21,6 +22,7 @@ def worst_case_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     for section in ("objectives", "constraints"):
         for name, entry in _mapping(raw, section).items():
             asked = entry.get("worst_of") if isinstance(entry, Mapping) else None
+            asked = scenarios if asked == EVERY else asked
             if not isinstance(asked, list | tuple) or not asked or not all(isinstance(n, str) for n in asked):
                 continue
             where = (section, name, "worst_of")
@@ -44,6 +46,18 @@ def _scenario_rules(where: Loc, asked: Sequence[str], scenarios: Sequence[str]) 
             yield mistake((*where, i), unknown("scenario", scenario, scenarios))
         elif scenario in asked[:i]:
             yield mistake((*where, i), f"{scenario} is named a second time; delete one of the two")
+
+
+def read_worst_of(value: object) -> object:
+    """Take the word for every scenario as the only name of a list; raises ValueError at another word."""
+    if isinstance(value, str) and value != EVERY:
+        raise ValueError(f"{show(value)} is neither a list of scenarios, [a, b], nor {EVERY}; write one of the two")
+    return (EVERY,) if value == EVERY else value
+
+
+def named_scenarios(worst_of: tuple[str, ...], model: object) -> tuple[str, ...]:
+    """Name every scenario of a `model` section where `all` stands for them; else return what is named already."""
+    return (BASE, *getattr(model, "scenarios", ())) if worst_of == (EVERY,) else worst_of
 
 
 def worst_cases(campaign: "Campaign") -> tuple[Worst, ...]:

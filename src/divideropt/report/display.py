@@ -85,6 +85,12 @@ class Axis:
         """Write a value, given in the platform's unit, without the unit."""
         return number(self.scaled(value))
 
+    def short(self, value: float) -> str:
+        """Write a value that was computed with the unit shown, without zeros that say nothing."""
+        text = number(self.scaled(value))
+        text = text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+        return f"{text} {self.shown.unit}".rstrip()
+
     def bound(self, value: float) -> str:
         """Write a value that somebody gave, a bound or a goal, as short as it was given, with the unit shown."""
         return f"{self.scaled(value):.6g} {self.shown.unit}".rstrip().replace("-", "−")

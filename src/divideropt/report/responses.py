@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from divideropt.analysis import spread
 from divideropt.campaign.plan import dividers
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETER_SETS, parameter_set
@@ -15,7 +16,7 @@ from divideropt.ode import SolverStatus
 from divideropt.problem import Problem
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
-from divideropt.report.sampling import spread, thin
+from divideropt.report.sampling import thin
 
 MOST_RESPONSES = 200
 """Designs whose response the page holds; each costs a simulation and about 3 kB."""
@@ -94,17 +95,49 @@ def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Des
     for name in PARAMETER_SETS:
         response = model.respond(parameter_set(name))
         verdict = measure(response)[1]
-        curve = _curve(name, response)
+        curve = step_response(name, response)
         if curve is not None:
             sets.append(curve)
         if not verdict.ok:
             shown = "as far as it goes" if curve is not None else "so it is not drawn"
             notes.append(f"{name} under this scenario ends {verdict.outcome} ({verdict.text}); {shown}.")
-    curves = [(d, _curve(d.design_id, model.respond(_parameters(problem, d)))) for d in _chosen(front, best)]
+    curves = [(d, step_response(d.design_id, model.respond(_parameters(problem, d)))) for d in _chosen(front, best)]
     failed = [design.design_id for design, curve in curves if curve is None]
     if failed:
         notes.append(f"These designs did not complete when simulated again: {', '.join(failed)}.")
     return Responses(tuple(sets), tuple(c for _, c in curves if c is not None), tuple(notes))
+
+
+def step_response(
+    name: str, response: Response, lead: float = LEAD, lead_points: int = LEAD_POINTS, points: int = MOST_POINTS
+) -> StepResponse | None:
+    """Reduce a response to what is drawn.
+
+    Args:
+        name: Whose it is.
+        response: As simulated.
+        lead: How much of the time before the first event, as a share of the time after it.
+        lead_points: Most points of that, where something moves there.
+        points: Most points of each phase after it.
+
+    Returns:
+        The load flows; None where the simulation did not get to the end.
+    """
+    first, *later = response.phases
+    if any(p.trajectory is None or p.trajectory.status is not SolverStatus.FINISHED for p in later):
+        return None
+    begin = response.scenario.events[0].at
+    before = _before(first, begin, lead * (response.scenario.end_time - begin), lead_points)
+    parts = [_sampled(phase, phase.span.begin, phase.span.end, points) for phase in later]
+    after = np.concatenate([times for times, _ in parts]) - begin, np.concatenate([flows for _, flows in parts])
+    times = np.concatenate([before[0] - begin, after[0]])
+    flows = np.concatenate([before[1], after[1]])
+    return StepResponse(
+        name,
+        tuple(rounded(t * _MS) for t in times),
+        (_flows(flows[:, 0]), _flows(flows[:, 1])),
+        rounded(_busy(*after) * _MS),
+    )
 
 
 def _chosen(front: Sequence[Design], best: Sequence[Design]) -> list[Design]:
@@ -121,29 +154,10 @@ def _parameters(problem: Problem, design: Design) -> Mapping[str, float]:
     return dict(problem.fixed) | dict(zip(problem.space.names, design.variables, strict=True))
 
 
-def _curve(name: str, response: Response) -> StepResponse | None:
-    """Reduce a response to what is drawn; None where the simulation did not get to the end."""
-    first, *later = response.phases
-    if any(p.trajectory is None or p.trajectory.status is not SolverStatus.FINISHED for p in later):
-        return None
-    begin = response.scenario.events[0].at
-    before = _before(first, begin, LEAD * (response.scenario.end_time - begin))
-    parts = [_sampled(phase, phase.span.begin, phase.span.end, MOST_POINTS) for phase in later]
-    after = np.concatenate([times for times, _ in parts]) - begin, np.concatenate([flows for _, flows in parts])
-    times = np.concatenate([before[0] - begin, after[0]])
-    flows = np.concatenate([before[1], after[1]])
-    return StepResponse(
-        name,
-        tuple(rounded(t * _MS) for t in times),
-        (_flows(flows[:, 0]), _flows(flows[:, 1])),
-        rounded(_busy(*after) * _MS),
-    )
-
-
-def _before(phase: Phase, step: float, lead: float) -> tuple[FloatArray, FloatArray]:
+def _before(phase: Phase, step: float, lead: float, count: int) -> tuple[FloatArray, FloatArray]:
     """Times and flows before the first event: at rest, or the end of the way there."""
     if phase.trajectory is not None:
-        return _sampled(phase, max(step - lead, float(phase.trajectory.edges[0])), step, LEAD_POINTS)
+        return _sampled(phase, max(step - lead, float(phase.trajectory.edges[0])), step, count)
     if phase.end is None:
         return np.empty(0), np.empty((0, 2))
     return np.array([step - lead, step]), np.tile(phase.load_flows(phase.end), (2, 1))

@@ -81,7 +81,7 @@ def read_run(run: Run, log: Summary, reference: FloatArray | None, ended: Ended 
         run.strategy,
         run.seed,
         log.evaluations,
-        run.options.budget,
+        run.budget,
         int(told.feasible.sum()),
         dict(sorted(log.outcomes.items(), key=lambda item: list(Outcome).index(Outcome(item[0])))),
         log.examples,

@@ -1,5 +1,7 @@
 """What made a report's figures, in words: formulation, parameters, scenarios, solver."""
 
+from collections.abc import Mapping
+
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.models.divider import Event, Scenario
@@ -15,7 +17,7 @@ def setting_of(campaign: Campaign) -> tuple[tuple[str, str], ...]:
         return (("Model", model.kind), *uncertainty_words(campaign))
     solver = model.solver
     scenarios = (
-        ("Scenario" if name == BASE else f"Scenario {name}", _scenario_words(scenario))
+        ("Scenario" if name == BASE else f"Scenario {name}", _scenario_words(scenario) + _set_words(model, name))
         for name, scenario in model.all_scenarios().items()
     )
     loss = "; with the losses at the grooves' ends" if model.groove_loss == "entrance" else ""
@@ -50,9 +52,15 @@ def _event_words(event: Event) -> str:
 
 
 def _parameter_words(model: DividerConfig) -> str:
+    return f"{model.parameters}, with {_values_words(model, model.set)}" if model.set else model.parameters
+
+
+def _set_words(model: DividerConfig, scenario: str) -> str:
+    changes = model.changes().get(scenario)
+    return f"; with {_values_words(model, changes)}" if changes else ""
+
+
+def _values_words(model: DividerConfig, values: Mapping[str, float]) -> str:
     parameters = model.tables().parameters or {}
-    changes = ", ".join(
-        f"{name.replace('_', ' ')} {axis_of(parameters[name], [value]).bound(value)}"
-        for name, value in model.set.items()
-    )
-    return f"{model.parameters}, with {changes}" if changes else model.parameters
+    axes = {name: axis_of(parameters[name], [value]) for name, value in values.items()}
+    return ", ".join(f"{axes[name].words} {axes[name].bound(value)}" for name, value in values.items())

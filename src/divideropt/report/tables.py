@@ -25,11 +25,12 @@ class Heading:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell: its text, what to sort by, and whether a goal is met there, None where there is none."""
+    """A cell: its text, what to sort by, if a goal is met there, None where there is none, and if it is the worst."""
 
     text: str
     order: str = ""
     met: bool | None = None
+    worst: bool = False
 
 
 @dataclass(frozen=True)

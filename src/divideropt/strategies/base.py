@@ -30,9 +30,8 @@ AggregateName = Literal["goal_attainment", "power_sum"]
 class Strategy(Protocol):
     """A method of optimisation with its options."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for, of a problem with so many variables."""
         ...
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

@@ -62,9 +62,8 @@ class ComplexMethod:
     restart: RestartName | None = None
     """Where the next complex begins: none, fresh (anywhere in the box), or best (around the best design so far)."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for; see `Strategy.budget`."""
         return self.evaluations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

@@ -60,9 +60,8 @@ class GoalAttainment:
     augmentation: Annotated[float, Field(ge=0.0, le=1.0)] = AUGMENTATION
     """ρ: what the sum of the scaled objectives counts beside their maximum."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for; see `Strategy.budget`."""
         return self.evaluations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

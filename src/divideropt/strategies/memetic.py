@@ -49,9 +49,8 @@ class Memetic:
     evaluations: Count = 12_500
     """Budget of evaluations."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for; see `Strategy.budget`."""
         return self.evaluations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

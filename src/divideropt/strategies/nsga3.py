@@ -34,9 +34,8 @@ class NSGA3:
     directions: Annotated[int, Field(ge=3, le=10_000)] = 91
     """Reference directions, spread evenly (Das and Dennis); the largest such set of at most this many."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for; see `Strategy.budget`."""
         return self.population * self.generations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

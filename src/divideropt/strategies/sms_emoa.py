@@ -26,9 +26,8 @@ class SMSEMOA:
     generations: Count = 125
     """Generations, the initial population counted."""
 
-    @property
-    def budget(self) -> int:
-        """Most evaluations a run asks for."""
+    def budget(self, variables: int) -> int:
+        """Most evaluations a run asks for; see `Strategy.budget`."""
         return self.population * self.generations
 
     def objection(self, variables: int, objectives: int) -> tuple[str, str] | None:

@@ -1,17 +1,21 @@
 """Several scenarios on one design: the quantities of each, and the worst of some of them."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
+from divideropt.models.base import FloatArray, Outcome, Parameter, Quantity, Verdict
 from divideropt.models.divider.model import Divider
 from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
 
 BASE = "scenario"
 """Name of the scenario whose quantities have plain names."""
+
+AS_GOOD_AS_EQUAL = 1e-3
+"""Part of a magnitude within which two scenarios are equally bad: some times what the solver's tolerance leaves."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +45,12 @@ class Scenarios:
     Attributes:
         models: The divider under each by name; that of `BASE` first.
         worst: What is to be gathered over them.
+        changes: Parameters that a scenario sets whatever the design says, SI, by its name and theirs.
     """
 
     models: Mapping[str, Divider]
     worst: tuple[Worst, ...] = ()
+    changes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def base(self) -> Divider:
@@ -75,15 +81,24 @@ class Scenarios:
         columns: dict[str, FloatArray] = {}
         verdicts: list[Verdict] = []
         for name, model in self.models.items():
-            values, found = model.evaluate(designs)
-            columns |= {_prefixed(name, key): values[:, i] for i, key in enumerate(model.quantities)}
+            values, found = model.evaluate(self._under(name, designs))
+            columns |= {column_of(name, key): values[:, i] for i, key in enumerate(model.quantities)}
             verdicts = (
                 [*found] if name == BASE else [_first(a, b, name) for a, b in zip(verdicts, found, strict=True)]
             )
         for worst in self.worst:
-            over = np.array([columns[_prefixed(name, worst.quantity)] for name in worst.scenarios])
+            over = np.array([columns[column_of(name, worst.quantity)] for name in worst.scenarios])
             columns[worst.name] = _worst_of(over, quantities[worst.name].signed, worst.least)
         return np.column_stack([columns[name] for name in quantities]), verdicts
+
+    def _under(self, name: str, designs: FloatArray) -> FloatArray:
+        """Return designs as a scenario has them, shape (n, d)."""
+        changes = self.changes.get(name)
+        if not changes:
+            return designs
+        order, changed = list(self.parameters), designs.copy()
+        changed[:, [order.index(parameter) for parameter in changes]] = list(changes.values())
+        return changed
 
     def on_threads(self, threads: int) -> "Scenarios | None":
         """Return the same model, its batches shared by threads; None where one of the scenarios' cannot be."""
@@ -108,6 +123,29 @@ def quantities_by_scenario(events: Mapping[str, Sequence[int]]) -> dict[str, Qua
     return {q.name: q for name, numbers in events.items() for q in _of_scenario(name, numbers)}
 
 
+def column_of(scenario: str, quantity: str) -> str:
+    """Name a scenario's quantity: `settling_time`, or `cold_oil.settling_time`."""
+    return quantity if scenario == BASE else f"{scenario}.{quantity}"
+
+
+def outcomes_by_scenario(verdict: Verdict, scenarios: Sequence[str]) -> tuple[Outcome | None, ...]:
+    """Return what a verdict on all scenarios, in their order, says of each.
+
+    Returns:
+        Ok for those before the one that failed, and None for those after it, of which nothing is known. What did not
+        come from one scenario's simulation, a crash say, is the outcome of all. A design that fails in samples of
+        uncertain parameters only is ok in every scenario as it is.
+    """
+    if verdict.outcome in (Outcome.CRASHED, Outcome.TIMED_OUT):
+        return (verdict.outcome,) * len(scenarios)
+    if verdict.ok or _SAMPLED.match(verdict.text):
+        return (Outcome.OK,) * len(scenarios)
+    named = _NAMED.match(verdict.text)
+    place = scenarios.index(named[1] if named else BASE)
+    before: tuple[Outcome | None, ...] = (Outcome.OK,) * place
+    return (*before, verdict.outcome, *(None,) * (len(scenarios) - place - 1))
+
+
 def _of_scenario(name: str, events: Sequence[int]) -> Iterator[Quantity]:
     for q in quantities_of(events).values():
         if name == BASE:
@@ -122,10 +160,6 @@ def _quantity_of(worst: Worst, known: Mapping[str, Quantity]) -> Quantity:
     return replace(q, name=worst.name, description=f"{q.description}; {words}")
 
 
-def _prefixed(scenario: str, quantity: str) -> str:
-    return quantity if scenario == BASE else f"{scenario}.{quantity}"
-
-
 def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
     """The earlier verdict unless it is ok and the later, of a named scenario, is not."""
     if not earlier.ok or later.ok:
@@ -133,8 +167,18 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
     return Verdict(later.outcome, f"in scenario {name}: {later.text}")
 
 
+_NAMED = re.compile(r"in scenario ([a-z][a-z0-9_]*): ", re.ASCII)
+"""How the text of a verdict names the scenario."""
+
+_SAMPLED = re.compile(r"in [0-9]+ of [0-9]+ samples: ", re.ASCII)
+"""How it says that the design fails in samples of uncertain parameters, not as it is."""
+
+
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
-    """Gather the worst of each design, NaN where one is; a signed quantity counts by its magnitude, and stays signed.
+    """Gather the worst of each design, NaN where one is; a signed quantity counts by magnitude and keeps its sign.
+
+    Of scenarios that are as good as equal in magnitude the first gives the sign: mirrored ones, as of a step in
+    either load, are equal but for what the solver rounds, and their sign would be a matter of chance.
 
     Args:
         over: Shape (scenarios, n).
@@ -147,5 +191,8 @@ def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:
     size = np.abs(over) if signed else over
     lost = np.isnan(size).any(axis=0)
     size = np.where(lost, 0.0, size)
-    rows = size.argmin(axis=0) if least else size.argmax(axis=0)
-    return np.where(lost, np.nan, np.take_along_axis(over, rows[None], axis=0)[0])
+    worst = size.min(axis=0) if least else size.max(axis=0)
+    if signed:
+        first = (np.abs(size - worst) <= AS_GOOD_AS_EQUAL * worst).argmax(axis=0)
+        worst = np.copysign(worst, np.take_along_axis(over, first[None], axis=0)[0])
+    return np.where(lost, np.nan, worst)

@@ -1,0 +1,175 @@
+"""A sensitivity study of a campaign: the work of `divideropt sensitivity`.
+
+A study is a campaign itself, whose variables are what is studied and whose only strategy lays designs out; so its
+store, in a folder of the campaign's, is logged, resumed, extended and shared among processes like any other.
+"""
+
+import dataclasses
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, TextIO, cast
+
+from divideropt.campaign.config import Campaign, OptimalityConfig, VerificationConfig
+from divideropt.campaign.divider import DividerConfig
+from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.fields import measure_of
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.nominal import nominal_campaign
+from divideropt.campaign.plans import StrategyPlan
+from divideropt.campaign.ranges import read_range
+from divideropt.campaign.runner import Runner
+from divideropt.campaign.sections import unknown
+from divideropt.campaign.sensitivity import SensitivityConfig
+from divideropt.errors import IncompleteRunsError, UsageError
+from divideropt.models import Parameter
+from divideropt.models.divider.study import THESIS_RANGES
+from divideropt.store import Store
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)
+
+
+@dataclasses.dataclass(frozen=True)
+class Asked:
+    """What a study is to be, where that is not what the campaign says.
+
+    Attributes:
+        method: oat, morris or sobol.
+        parameters: What is studied, `NAME` or `NAME=LOWER..UPPER`; what the campaign says where empty.
+        count: Points, trajectories or samples; None for the campaign's.
+        alone: Whether a Sobol study goes without indices of pairs, whatever the campaign says.
+    """
+
+    method: str
+    parameters: tuple[str, ...] = ()
+    count: int | None = None
+    alone: bool = False
+
+
+def study_store(campaign_store: Store, name: str) -> Store:
+    """Return the store of a study, there or not.
+
+    Raises:
+        UsageError: The name cannot be a folder's.
+        StoreError: A file is where a folder should be.
+    """
+    if not _NAME.fullmatch(name):
+        raise UsageError(
+            f"--study {name!r} cannot name a folder; use 1 to 64 of A-Z, a-z, 0-9, - and _, a letter or digit first"
+        )
+    return campaign_store.study(name)
+
+
+def study_of(campaign: Campaign, asked: Asked) -> Campaign:
+    """Make the campaign that is a study of another.
+
+    Args:
+        campaign: What is studied.
+        asked: How.
+
+    Returns:
+        The same model, objectives and constraints, of a campaign with uncertainty the nominal ones; its variables
+        are the parameters studied, its only strategy the sampling.
+
+    Raises:
+        UsageError: A parameter or a count is wrong.
+    """
+    config = campaign.sensitivity
+    options = _options(config, asked)
+    certain = campaign if campaign.uncertainty is None else nominal_campaign(campaign)
+    study = certain.model_copy(
+        update={
+            "name": campaign.name,
+            "nominal": False,
+            "variables": _ranges(campaign, asked),
+            "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
+            "sensitivity": SensitivityConfig(),
+            "verification": VerificationConfig(sample=0, tolerance=f"{campaign.verification.tolerance} %"),  # type: ignore[arg-type]  # as a file has it
+            "optimality": OptimalityConfig(points=0),
+        }
+    )
+    return parse_campaign(dump_campaign(study), f"the study {asked.method} of {campaign.name}")
+
+
+def run_study(
+    study: Campaign, store: Store, workers: int | None, words: TextIO, again: str, *, fresh: bool = False
+) -> None:
+    """Run what is not yet in a study's store.
+
+    Args:
+        study: From `study_of`.
+        store: Its own, from `study_store`.
+        workers: Processes at a time; the campaign's where None.
+        words: Where progress is shown.
+        again: The command that goes on if this one is stopped.
+        fresh: Whether to move an existing store aside first.
+
+    Raises:
+        IncompleteRunsError: The run was given up.
+        DivideroptError: As `Runner.sample` does.
+    """
+    runner = Runner(study, store.folder, workers or study.parallel.workers, words, again)
+    failures = runner.sample(fresh=fresh)
+    if failures:
+        reasons = "\n  ".join(f"{name}: {reason}" for name, reason in failures.items())
+        raise IncompleteRunsError(f"{store.folder}: the study is incomplete:\n  {reasons}\nTo try again:\n  {again}")
+
+
+def _options(config: SensitivityConfig, asked: Asked) -> Any:
+    """The sampling with its options, its count replaced where another is asked for."""
+    options: Any = getattr(config, asked.method)
+    if asked.alone and asked.method != "sobol":
+        raise UsageError(f"--no-second-order is of method sobol, not {asked.method}; leave it away")
+    if asked.alone:
+        options = dataclasses.replace(options, second_order=False)
+    if asked.count is None:
+        return options
+    name = {"oat": "points", "morris": "trajectories", "sobol": "samples"}[asked.method]
+    try:
+        return type(options)(**{**dataclasses.asdict(options), name: asked.count})
+    except ValueError as error:
+        reason = cast(Any, error).errors()[0]["msg"].removeprefix("Value error, ")
+        raise UsageError(f"--samples {asked.count}: {reason[0].lower()}{reason[1:]}") from None
+
+
+def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float]]:
+    """What is studied, between which ends."""
+    usual = dict(campaign.sensitivity.parameters) or _usual(campaign, asked.method)
+    if not asked.parameters:
+        return usual
+    table = campaign.model.tables().parameters or {}
+    known = {**campaign.variables, **_usual(campaign, "oat"), **usual}
+    return dict(_asked_range(text, table, known) for text in asked.parameters)
+
+
+def _usual(campaign: Campaign, method: str) -> dict[str, tuple[float, float]]:
+    model = campaign.model
+    if method != "oat" or not isinstance(model, DividerConfig):
+        return dict(campaign.variables)
+    theirs = {name for scenario in model.scenarios.values() for name in scenario.set}
+    return {name: ends for name, ends in THESIS_RANGES.items() if name not in theirs}
+
+
+def _asked_range(
+    text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]]
+) -> tuple[str, tuple[float, float]]:
+    """Read `NAME`, whose range is known, or `NAME=LOWER..UPPER`."""
+    name, _, written = text.partition("=")
+    name = name.strip()
+    if name not in table:
+        raise UsageError(f"--parameter {text}: {unknown('parameter', name, table)}")
+    if not written:
+        if name not in known:
+            example = measure_of(table[name]).write(table[name].default)
+            raise UsageError(
+                f"--parameter {name}: neither the campaign nor the thesis has a range for it; write "
+                f"--parameter '{name}=LOWER..UPPER', around {example}, say"
+            )
+        return name, known[name]
+    ends: Sequence[str] = [end.strip() for end in written.split("..")]
+    if len(ends) != 2:
+        raise UsageError(f"--parameter {text}: {written!r} is not a range; write NAME=LOWER..UPPER")
+    try:
+        return name, read_range(table[name], list(ends))
+    except ValueError as error:
+        reason = cast(Any, error).errors()[0]["msg"] if hasattr(error, "errors") else str(error)
+        raise UsageError(f"--parameter {text}: {reason}") from None
