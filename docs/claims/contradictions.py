@@ -19,12 +19,19 @@ def contradictions(base: Mapping[str, float]) -> list[str]:
     return [*_chapter_3(base), *_first_test(), *_tables(), *_appendix()]
 
 
-def _chapter_3(base: Mapping[str, float]) -> Sequence[str]:
+def of_figure_3_1(base: Mapping[str, float]) -> str:
+    """Say why Figure 3.1 is not of the printed test; `base` as in `contradictions`."""
     flows = " and ".join(f"{1e6 * base[name]:.0f}×10⁻⁶ m³/s" for name in ("load_flow_1", "load_flow_2"))
     return (
         "**Figure 3.1 is of another test.** Its vertical axis has its last tick at 400×10⁻⁶ m³/s, and section 3.1 "
         "says it shows a source flow of 10⁻³ m³/s with Appendix B’s parameters: the two flows should then add up to "
-        f"nearly that, some 500×10⁻⁶ m³/s each, which is above the axis. Ours, by the listing, end at {flows}.",
+        f"nearly that, some 500×10⁻⁶ m³/s each, which is above the axis. Ours, by the listing, end at {flows}."
+    )
+
+
+def _chapter_3(base: Mapping[str, float]) -> Sequence[str]:
+    return (
+        of_figure_3_1(base),
         "**What the pilot flow bypasses.** Section 3.4 (groove width) says that it bypasses “the variable orifice”. "
         "By the thesis’s own equations it goes from the source to the flow chambers, between fixed and variable "
         "orifice: it bypasses the fixed one.",

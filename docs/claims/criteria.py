@@ -90,6 +90,17 @@ def crossings(places: FloatArray, curve: FloatArray) -> list[float]:
     return [float(places[i] - curve[i] * (places[i + 1] - places[i]) / (curve[i + 1] - curve[i])) for i in found]
 
 
+def off_line(places: FloatArray, curve: FloatArray) -> float:
+    """Return how far a curve leaves its line of least squares at most, over its range."""
+    line = np.polyval(np.polyfit(places, curve, 1), places)
+    return float(np.abs(curve - line).max() / np.ptp(curve))
+
+
+def straight(off: float) -> Answer:
+    """Judge by `off_line` whether a curve is nearly a line."""
+    return Answer.YES if off <= STRAIGHT else Answer.IN_PART if off <= BENT else Answer.NO
+
+
 def too_few(sweep: Sweep) -> Judgement | None:
     """Return the judgement of a sweep of which too little is ok, else None."""
     if sweep.ok.mean() >= ENOUGH:

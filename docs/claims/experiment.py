@@ -111,9 +111,7 @@ def measure(
     """
     points = []
     for fixed_drop, load_difference in rows:
-        scenario = _scenario(assumed, load_difference, spool_position)
-        design = prototype(assumed, fixed_drop)
-        response = respond(design, FORMULATIONS[formulation], scenario, SETTINGS)
+        response = respond_in_rig(formulation, assumed, fixed_drop, load_difference, spool_position)
         found, verdict = quantities_of(response)
         row = dict(zip(QUANTITIES, found.tolist(), strict=True))
         drop, difference = _came_out(response)
@@ -132,6 +130,14 @@ def measure(
             )
         )
     return points
+
+
+def respond_in_rig(
+    formulation: str, assumed: Assumptions, fixed_drop: float, load_difference: float, spool_position: float = CENTRED
+) -> Response:
+    """Simulate one test; arguments as in `measure`."""
+    scenario = _scenario(assumed, load_difference, spool_position)
+    return respond(prototype(assumed, fixed_drop), FORMULATIONS[formulation], scenario, SETTINGS)
 
 
 def _came_out(response: Response) -> tuple[float, float]:

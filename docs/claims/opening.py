@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from claims.criteria import BENT, STRAIGHT, ZERO_ERROR, falls, rises, small, strong, tail, too_few
+from claims.criteria import ZERO_ERROR, falls, off_line, rises, small, straight, strong, tail, too_few
 from claims.judgement import Answer, Chapter, Judgement, Statement, all_of
 from claims.runs import Runs
 from divideropt.models.divider.study import THESIS_RANGES
@@ -63,11 +63,10 @@ def _rim_dynamics(runs: Runs) -> Judgement:
 
 def _rim_linear(runs: Runs) -> Judgement:
     sweep = runs.sweep("rim_thickness")
-    error = sweep["flow_difference"]
-    line = np.polyval(np.polyfit(sweep.places, error, 1), sweep.places)
-    off = float(np.abs(error - line).max() / np.ptp(error))
-    answer = Answer.YES if off <= STRAIGHT else Answer.IN_PART if off <= BENT else Answer.NO
-    return too_few(sweep) or Judgement(answer, f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}")
+    off = off_line(sweep.places, sweep["flow_difference"])
+    return too_few(sweep) or Judgement(
+        straight(off), f"at most {100 * off:.1f} % of its range off the line{tail(sweep)}"
+    )
 
 
 def _rim_to_zero(runs: Runs) -> Judgement:

@@ -51,6 +51,10 @@ def run(parameters: Mapping[str, float], formulation: Formulation, scenario: Sce
         scenario: What happens to it, in one event; the standard test, settled, if not given.
     """
     scenario = Scenario() if scenario is None else scenario
-    response = respond(parameters, formulation, scenario, EXACT)
+    return measured(respond(parameters, formulation, scenario, EXACT))
+
+
+def measured(response: Response) -> Run:
+    """Measure a response."""
     row, verdict = measure(response)
     return Run(response, dict(zip(QUANTITIES, row.tolist(), strict=True)), verdict.outcome)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from divideropt.analysis import Convergence, Tally
     from divideropt.campaign.config import Campaign
+    from divideropt.campaign.status import StoreStatus
 
 # Everything else is imported by the command that needs it, so that --help answers at once.
 # ruff: noqa: PLC0415
@@ -84,24 +85,32 @@ def commands() -> None:
 def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool) -> None:
     """Run a campaign, or go on where its store stopped; write fronts and report."""
     asked = _load(campaign)
-    from divideropt.campaign.runner import Runner
+    from divideropt.campaign.companion import run_campaign
     from divideropt.report import write_report
     from divideropt.store import Store
 
     folder = store or Path("results") / asked.name
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
-    runner = Runner(asked, folder, workers or asked.parallel.workers, sys.stderr, again)
     try:
-        done = runner.run(fresh=fresh)
+        done, companion = run_campaign(
+            asked, folder, workers or asked.parallel.workers, sys.stderr, again, fresh=fresh
+        )
     except NoFeasibleDesignError:
         _say(f"report: {write_report(Store(folder))}")
         raise
     _say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.front.points} designs)")
     _say(_counted(done.front))
     _say(_converged(done.kkt))
+    failures, runs = dict(done.failures), len(done.logs)
+    if companion is not None:
+        count = f"{companion.feasible} of {companion.points} designs of its front"
+        _say(f"nominal: {count} are feasible in the whole campaign")
+        if companion.outcomes is not None:
+            failures |= {f"nominal/{name}": reason for name, reason in companion.outcomes.failures.items()}
+            runs += len(companion.outcomes.logs)
     _say(f"report: {write_report(done.store, logs=done.logs)}")
-    if done.failures:
-        raise _incomplete(folder, done.failures, len(done.logs), again)
+    if failures:
+        raise _incomplete(folder, failures, runs, again)
 
 
 @commands.command()
@@ -137,21 +146,7 @@ def status(store: Path, as_json: bool) -> None:
     if as_json:
         _write_data(json.dumps(dataclasses.asdict(found), indent=2) + "\n")
         return
-    verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
-    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
-    lines += [] if found.kkt is None else [_converged(found.kkt)]
-    for item in found.runs:
-        outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
-        best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
-        volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
-        lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
-        if item.ending is not None:
-            lines.append(f"  ended: {item.ending}")
-        if item.failure is not None:
-            lines.append(f"  incomplete, given up: {item.failure}")
-        if not item.repeatable:
-            lines.append("  not repeatable from scratch: a simulation timed out or crashed")
-    _write_data("\n".join(lines) + "\n")
+    _write_data("\n".join(_status_lines(found)) + "\n")
 
 
 @commands.command()
@@ -195,6 +190,7 @@ def compare(stores: tuple[Path, ...], evaluations: int | None, as_json: bool, ou
 @click.option(
     "--samples", type=click.IntRange(2), help="Points of a sweep, trajectories, or blocks of a Sobol' study."
 )
+@click.option("--no-second-order", "alone", is_flag=True, help="Sobol: leave out pairs, for nearly half the designs.")
 @click.option("--study", help="Name of the study's folder; the method where not given.")
 @click.option("--store", type=_FILE, help="Folder of the campaign's results; results/NAME where not given.")
 @click.option("--workers", type=click.IntRange(1, 256), help="Processes at a time; the campaign's where not given.")
@@ -204,6 +200,7 @@ def sensitivity(
     method: str,
     parameters: tuple[str, ...],
     samples: int | None,
+    alone: bool,
     study: str | None,
     store: Path | None,
     workers: int | None,
@@ -223,17 +220,22 @@ def sensitivity(
     """  # noqa: D301 (\b is click's)
     asked = _load(campaign)
     from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.report import read_study, study_text, write_study
     from divideropt.store import Store
 
-    wanted = study_of(asked, Asked(method, parameters, samples))
+    wanted = study_of(asked, Asked(method, parameters, samples, alone))
     folder = store or Path("results") / asked.name
     given = {"--method": method, "--samples": samples, "--study": study, "--store": store}
     options = [word for key, value in given.items() if value is not None for word in (key, str(value))]
+    options += ["--no-second-order"] if alone else []
     chosen = [word for name in parameters for word in ("--parameter", name)]
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
     kept = study_store(Store(folder), study or method)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
-    _say(f"study:  {kept.folder}")
+    found = None if method == "oat" else read_study(kept)
+    if found is not None:
+        _write_data(study_text(found) + "\n")
+    _say(f"report: {write_study(kept, data=found)}")
 
 
 @commands.command()
@@ -310,6 +312,36 @@ def schema() -> None:
     from divideropt.campaign.dump import campaign_schema
 
     _write_data(json.dumps(campaign_schema(), indent=2, ensure_ascii=False) + "\n")
+
+
+def _status_lines(found: "StoreStatus") -> list[str]:
+    """Word a status, that of the companion after that of its campaign."""
+    verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
+    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
+    lines += [] if found.kkt is None else [_converged(found.kkt)]
+    for item in found.runs:
+        outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
+        best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
+        volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
+        lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        if item.ending is not None:
+            lines.append(f"  ended: {item.ending}")
+        if item.failure is not None:
+            lines.append(f"  incomplete, given up: {item.failure}")
+        if not item.repeatable:
+            lines.append("  not repeatable from scratch: a simulation timed out or crashed")
+    if found.asks_nominal:
+        lines.append(_nominal_line(found))
+        lines += [] if found.nominal is None else [f"nominal: {line}" for line in _status_lines(found.nominal)]
+    return lines
+
+
+def _nominal_line(found: "StoreStatus") -> str:
+    """Say how far the comparison with the companion is."""
+    if found.beside is None:
+        return "nominal: the companion's front is not there yet; `divideropt run` goes on"
+    known, points, feasible = found.beside.known, found.beside.points, found.beside.feasible
+    return f"nominal: {known} of {points} designs of its front simulated in the whole campaign, {feasible} feasible"
 
 
 def _load(path: Path | None) -> "Campaign":

@@ -98,6 +98,8 @@ def test_the_extremes_the_nearest_and_a_sample_are_chosen_each_once():
     assert len(worth_verifying(front, PROBLEM, SCHEMA, 0)) == 7
     assert set(worth_verifying(front, PROBLEM, SCHEMA, 1000)) == set(ids)
     assert worth_verifying(front.slice(0, 0), PROBLEM, SCHEMA, 50) == []
+    assert worth_verifying(front, PROBLEM, SCHEMA, 0, extremes=False) == []
+    assert len(set(worth_verifying(front, PROBLEM, SCHEMA, 50, extremes=False))) == 50
 
 
 def test_without_goals_there_is_no_nearest():

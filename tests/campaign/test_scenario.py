@@ -252,4 +252,4 @@ def test_the_guide_is_right(example):
 
 
 def test_the_guide_has_its_examples():
-    assert len(EXAMPLES) == 4
+    assert len(EXAMPLES) == 5

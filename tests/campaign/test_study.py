@@ -48,6 +48,7 @@ def test_the_other_methods_take_the_campaigns_variables():
     assert study.variables == campaign.variables
     assert study.objectives == campaign.objectives
     assert plan_runs(study)[0].budget == 4096 * 12
+    assert plan_runs(study_of(campaign, Asked("sobol", alone=True)))[0].budget == 4096 * 7
 
 
 def test_what_the_campaign_asks_for_is_done(toy):
@@ -75,6 +76,7 @@ def test_parameters_are_chosen_with_or_without_a_range(toy):
         (Asked("oat", ("stem_ratio=0.1",)), "'0.1' is not a range"),
         (Asked("oat", ("stem_ratio=0.6..0.1",)), "is not below the upper"),
         (Asked("oat", ("spool_radius=8..20",)), "8 has no unit; write 8 m"),
+        (Asked("oat", alone=True), "--no-second-order is of method sobol, not oat"),
         (Asked("sobol", (), 1000), "--samples 1000: 1000 is no power of two"),
     ],
 )

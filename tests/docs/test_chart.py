@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from modelpages.axis import Axis
-from modelpages.chart import Line, Note, Panel, draw
+from modelpages.chart import Area, Dots, Line, Note, Panel, draw
 from modelpages.tables import fixed, power, table
 
 
@@ -53,3 +53,26 @@ def test_tables_and_numbers() -> None:
     assert fixed(float("nan"), 1) == "–"
     assert power(-4.04e-8) == "−4.0·10⁻⁸"
     assert power(1e-18, nothing=1e-15) == "0"
+
+
+def test_areas_and_dots_stand_in_panel_and_legend() -> None:
+    x = np.array([0.0, 1.0])
+    area, dots = Area("between", x, x, x + 1, 2), Dots("points", x, x, 1, hollow=True)
+    text = draw([Panel([Line("", x, x)], "x", "y", areas=[area], dots=[dots])], "what")
+    root = ElementTree.fromstring(text)
+    words = ["".join(node.itertext()) for node in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"between", "points"} <= set(words)
+    assert "" not in words
+    assert len(list(root.iter("{http://www.w3.org/2000/svg}circle"))) == 3  # one of them in the legend
+    assert len(re.findall(r'<path d="[^"]*Z" class="f2"', text)) == 2
+    assert ".f2{fill:" in text  # dark, too
+
+
+def test_panels_go_on_in_the_next_row() -> None:
+    panel = Panel([Line("a", np.array([0.0, 1.0]), np.array([0.0, 1.0]))], "x", "y")
+    one, two = (ElementTree.fromstring(draw([panel] * count, "what", 2)) for count in (2, 3))
+    assert one.get("width") == two.get("width") == "800"
+    assert int(two.get("height")) > int(one.get("height"))
+    assert [node.get("transform") for node in two.findall("{http://www.w3.org/2000/svg}g")].count(
+        "translate(0 348)"
+    ) == 1

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from make_model_pages import PAGES
 
-OWN = ("README.md", "equations.md", "nomenclature.md", "pilot.md", "disagreements.md")
+OWN = ("README.md", "equations.md", "nomenclature.md", "pilot.md", "disagreements.md", "figures.md")
 TEXTS = {name: (PAGES / name).read_text(encoding="utf-8") for name in OWN}
 
 

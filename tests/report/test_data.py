@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from divideropt.analysis import Kkt, Optimality, Verified
+from divideropt.analysis import Kkt, Optimality, Verified, spread
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity
@@ -18,7 +18,7 @@ from divideropt.report.figures import front_3d, hypervolume, parallel_coordinate
 from divideropt.report.front import Design, leanings
 from divideropt.report.page import render_report
 from divideropt.report.responses import MOST_POINTS
-from divideropt.report.sampling import spread, thin
+from divideropt.report.sampling import thin
 from divideropt.report.tables import LAST, front_table, residual_cell
 from divideropt.store import Store, TableSchema
 

@@ -7,6 +7,7 @@ from divideropt.analysis.decision import Goals, achievement, bulge, knee_points,
 from divideropt.analysis.differences import neighbours
 from divideropt.analysis.fronts import combined_front, nondominated
 from divideropt.analysis.goal_directions import gaps, reached
+from divideropt.analysis.house_of_quality import Criterion, House, house_of_quality
 from divideropt.analysis.indicators import (
     additive_epsilon,
     best_attainment,
@@ -16,12 +17,16 @@ from divideropt.analysis.indicators import (
     igd_plus,
     multiplicative_epsilon,
 )
+from divideropt.analysis.morris import MorrisStudy, morris_study
 from divideropt.analysis.optimality import Optimality, optimality
 from divideropt.analysis.ranking import PairTest, effect_size, holm, pair_tests, probability_above, several_test
 from divideropt.analysis.scale import Scale, region
+from divideropt.analysis.sobol import SobolStudy, sobol_study
+from divideropt.analysis.spread import representatives, spread
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
 from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
+from divideropt.analysis.treatments import Treatment, Undefined
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
 __all__ = [
@@ -30,20 +35,26 @@ __all__ = [
     "Comparison",
     "Contender",
     "Convergence",
+    "Criterion",
     "Effect",
     "Failures",
     "Goals",
+    "House",
     "Indicator",
     "Kkt",
+    "MorrisStudy",
     "Optimality",
     "PairTest",
     "Ranking",
     "Scale",
     "Score",
+    "SobolStudy",
     "Summary",
     "Sweep",
     "Sweeps",
     "Tally",
+    "Treatment",
+    "Undefined",
     "Verified",
     "achievement",
     "additive_epsilon",
@@ -59,6 +70,7 @@ __all__ = [
     "effects_of",
     "gaps",
     "holm",
+    "house_of_quality",
     "hypervolume",
     "hypervolume_contributions",
     "hypervolume_history",
@@ -68,6 +80,7 @@ __all__ = [
     "measured",
     "median_surface",
     "meeting_goals",
+    "morris_study",
     "multiplicative_epsilon",
     "neighbours",
     "nondominated",
@@ -78,9 +91,12 @@ __all__ = [
     "reached",
     "region",
     "repeatable",
+    "representatives",
     "residuals",
     "scales_of",
     "several_test",
+    "sobol_study",
+    "spread",
     "summarise",
     "sweeps_of",
     "tally",

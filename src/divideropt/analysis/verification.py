@@ -46,7 +46,9 @@ class Tally:
     largest: Mapping[str, float | None]
 
 
-def worth_verifying(front: pa.Table, problem: Problem, schema: TableSchema, sample: int) -> list[str]:
+def worth_verifying(
+    front: pa.Table, problem: Problem, schema: TableSchema, sample: int, *, extremes: bool = True
+) -> list[str]:
     """Choose points of a front: both extremes of each objective, those nearest the goals, and a sample of the others.
 
     Args:
@@ -54,6 +56,7 @@ def worth_verifying(front: pa.Table, problem: Problem, schema: TableSchema, samp
         problem: What was optimised.
         schema: The store's columns.
         sample: How many of the others; all, where there are fewer.
+        extremes: Whether the extremes and those nearest the goals are among them; else only the sample is.
 
     Returns:
         Their `design_id`, in that order; the same for the same front.
@@ -61,8 +64,8 @@ def worth_verifying(front: pa.Table, problem: Problem, schema: TableSchema, samp
     if front.num_rows == 0:
         return []
     F = problem.tell(schema.evaluations(front)).F
-    rows = [*F.argmin(axis=0).tolist(), *F.argmax(axis=0).tolist()]
-    if all(o.goal is not None for o in problem.objectives):
+    rows = [*F.argmin(axis=0).tolist(), *F.argmax(axis=0).tolist()] if extremes else []
+    if extremes and all(o.goal is not None for o in problem.objectives):
         attainment = AGGREGATES["goal_attainment"](F, problem.objectives)
         rows += np.argsort(attainment, kind="stable")[:NEAREST].tolist()
     others = np.setdiff1d(np.arange(len(F)), rows)

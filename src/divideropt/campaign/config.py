@@ -18,6 +18,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.nominal import nominal_rules
 from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.ranges import read_range
@@ -127,11 +128,13 @@ class ParallelConfig(Section):
 class VerificationConfig(Section):
     """Which front points `divideropt run` simulates again by the model's reference, and what counts as the same.
 
-    The extremes of each objective and the points nearest the goals always are; `divideropt verify` does all.
+    `divideropt verify` does all.
     """
 
     sample: Annotated[int, Field(strict=True, ge=0, le=10**6)] = 50
     """How many of the other points of the combined front, drawn at random with a fixed seed."""
+    extremes: Annotated[bool, Field(strict=True)] = True
+    """Whether the extremes of each objective and the points nearest the goals are."""
     tolerance: Annotated[float, Measure("%", POSITIVE)] = 1.0
     """Largest deviation of an objective from the reference's, of which it is a share."""
 
@@ -259,6 +262,8 @@ class Campaign(Section):
     """Which parameters are uncertain, and how; without it every design is simulated as it is."""
     strategies: Annotated[tuple[StrategyPlan, ...], PlainValidator(read_plans), WithJsonSchema(plans_schema())]
     """What runs, in this order."""
+    nominal: Annotated[bool, Field(strict=True)] = False
+    """Whether a companion without scenarios and uncertainty runs too, to say what these cost."""
     verification: VerificationConfig = VerificationConfig()
     """Which front points are simulated again."""
     optimality: OptimalityConfig = Field(default_factory=lambda data: _affordable(data["model"], data["uncertainty"]))
@@ -280,6 +285,7 @@ class Campaign(Section):
         yield from _scenario_set_rules(raw)
         yield from worst_case_rules(raw)
         yield from uncertainty_rules(raw)
+        yield from nominal_rules(raw)
         yield from termination_rules(raw)
         aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
         for name, objective in _section(raw, "objectives").items():

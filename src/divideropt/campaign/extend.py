@@ -3,7 +3,7 @@
 A `termination` may change too, as long as no logged run would have ended by it before the last of its evaluations:
 loosened or deleted, the runs go on; tightened, those that have gone further are in the way.
 
-What touches no evaluation, `verification`, `optimality` and `parallel`, may be changed at will; and
+What touches no evaluation, `verification`, `optimality`, `nominal` and `parallel`, may be changed at will; and
 `model.deadline`, which counts for designs that are not yet logged.
 """
 

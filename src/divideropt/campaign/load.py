@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 from divideropt.campaign.config import Campaign, names_plugin
 from divideropt.campaign.divider import divider_tables
 from divideropt.campaign.fields import Tables
+from divideropt.campaign.nominal import nominal_campaign
 from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import MOST_MISTAKES, Document, KeyPath, read_document, read_text
 from divideropt.campaign.uncertainty import with_failures
@@ -109,12 +110,17 @@ def _is_uncertain(data: object) -> bool:
 
 
 def _objections(document: Document, campaign: Campaign) -> Iterator[Mistake]:
-    """Say which strategies do not suit a problem of this size."""
+    """Say which strategies do not suit a problem of this size, or that of the companion, which may be smaller."""
+    sizes = {len(campaign.objectives): ""}
+    if campaign.nominal:
+        sizes.setdefault(len(nominal_campaign(campaign).objectives), "the companion's: ")
     for plan in campaign.strategies:
-        objection = plan.options.objection(len(campaign.variables), len(campaign.objectives))
-        if objection is not None:
-            option, sentence = objection
-            yield from _placed(document, ("strategies", plan.name, option), sentence)
+        for objectives, whose in sizes.items():
+            objection = plan.options.objection(len(campaign.variables), objectives)
+            if objection is not None:
+                option, sentence = objection
+                yield from _placed(document, ("strategies", plan.name, option), whose + sentence)
+                break
         budget = plan.options.budget(len(campaign.variables))
         if plan.window is not None and plan.window >= budget:
             sentence = (

@@ -1,22 +1,17 @@
 """Neighbours of front points simulated, and the fronts marked with the KKT residuals that follow."""
 
-from collections.abc import Iterator, Mapping
-from contextlib import closing, nullcontext
+from collections.abc import Mapping
 from typing import TextIO
 
 import pyarrow as pa
 
 from divideropt.analysis import measured, neighbours, residuals, scales_of, worth_verifying
+from divideropt.campaign.batches import Batches
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew
-from divideropt.campaign.dump import dump_campaign
-from divideropt.campaign.guard import Guard
 from divideropt.campaign.interrupt import Interruption
-from divideropt.campaign.plan import dividers
 from divideropt.campaign.progress import Counter
-from divideropt.campaign.worker import simulate_share
-from divideropt.models.base import FloatArray
-from divideropt.problem import Evaluations, Problem
+from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 
 Fronts = Mapping[str, pa.Table]
@@ -56,7 +51,7 @@ class Neighbourhood:
         self._campaign, self._problem, self._store = campaign, problem, store
         self._words, self._interruption = words, interruption
         self._schema = TableSchema.of(problem)
-        self._text = dump_campaign(campaign)
+        self._simulate = Batches(campaign, problem, interruption).simulate
 
     def explore(self, fronts: Fronts, crew: Crew | None) -> dict[str, pa.Table]:
         """Simulate what is lacking for the residuals the campaign asks for, and write the fronts with them.
@@ -84,7 +79,8 @@ class Neighbourhood:
         words = "optimality: neighbours of {} of {} front points simulated"
         try:
             with Counter(words, missing.num_rows, self._words) as counter:
-                for row, evaluations in enumerate(self._simulate(designs, crew)):
+                around = (neighbours(design, self._problem.space) for design in designs)
+                for row, evaluations in enumerate(self._simulate(around, crew)):
                     name, run = (missing[key][row].as_py() for key in ("design_id", "run"))
                     count = len(evaluations)
                     log.append(self._schema.result_rows([name] * count, [run] * count, evaluations))
@@ -96,27 +92,6 @@ class Neighbourhood:
         for name, front in written.items():
             self._store.write_front(name, front)
         return written
-
-    def _simulate(self, designs: FloatArray, crew: Crew | None) -> Iterator[Evaluations]:
-        """Yield what comes out of each design's neighbours, until somebody asks to stop.
-
-        A model of somebody's own may die of a design, and is given a process to do so.
-        """
-        asked = self._until_stopped(designs)
-        ours = bool(dividers(self._problem.model))
-        if crew is not None:
-            with self._interruption.workers():
-                yield from crew.map(simulate_share, ((self._text, around, not ours) for around in asked))
-            return
-        guard = Guard(self._text, len(self._problem.model.quantities), self._campaign.model.deadline)
-        with nullcontext() if ours else closing(guard):
-            yield from map(self._problem.simulate if ours else guard.simulate, asked)
-
-    def _until_stopped(self, designs: FloatArray) -> Iterator[FloatArray]:
-        for design in designs:
-            if self._interruption.heard:
-                return
-            yield neighbours(design, self._problem.space)
 
 
 def _wanted(front: pa.Table, campaign: Campaign, problem: Problem, schema: TableSchema) -> pa.Table:

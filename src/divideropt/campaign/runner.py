@@ -247,7 +247,8 @@ class Runner:
         logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
         fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)
-        wanted = worth_verifying(combined, problem, schema, self._campaign.verification.sample)
+        asked = self._campaign.verification
+        wanted = worth_verifying(combined, problem, schema, asked.sample, extremes=asked.extremes)
         known = with_residuals(fronts | {"combined": combined}, self._campaign, problem, self._store)
         explorer = Neighbourhood(self._campaign, problem, self._store, self._words, self._interruption)
         written = explorer.explore(verifier.verify(known, wanted, crew), crew)

@@ -1,6 +1,6 @@
 """What a store holds and lacks: the work of `divideropt status`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from divideropt.analysis import (
     Convergence,
@@ -12,6 +12,8 @@ from divideropt.analysis import (
     summarise,
     tally,
 )
+from divideropt.campaign.beside import both_sides
+from divideropt.campaign.config import Campaign
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
@@ -55,6 +57,21 @@ class RunStatus:
 
 
 @dataclass(frozen=True)
+class BesideStatus:
+    """How a companion's front fares in the problem of its campaign.
+
+    Attributes:
+        points: Designs that stand for it.
+        known: How many of them were simulated there.
+        feasible: How many of these are feasible.
+    """
+
+    points: int
+    known: int
+    feasible: int
+
+
+@dataclass(frozen=True)
 class StoreStatus:
     """A store.
 
@@ -66,6 +83,9 @@ class StoreStatus:
         deviating: How many did not.
         kkt: How near to stationary its designs are, None before it is written.
         damage: What is wrong with the stored front, where that was made again from the logs; None where nothing is.
+        asks_nominal: Whether the campaign asks for a companion.
+        nominal: The companion's store, None before it is there.
+        beside: How its front fares in the whole campaign, None before there is one.
     """
 
     campaign: str
@@ -75,6 +95,9 @@ class StoreStatus:
     deviating: int | None
     kkt: Convergence | None
     damage: str | None
+    asks_nominal: bool = False
+    nominal: "StoreStatus | None" = None
+    beside: BesideStatus | None = None
 
 
 def read_status(store: Store) -> StoreStatus:
@@ -118,7 +141,21 @@ def read_status(store: Store) -> StoreStatus:
         combined = with_residuals({"combined": combined}, campaign, problem, store)["combined"]
         front = marked(combined, known, problem, schema, campaign.verification.share)
     if front is None:
-        return StoreStatus(campaign.name, tuple(runs), None, None, None, None, None)
-    count = tally(front, schema)
-    kkt = convergence(front)
-    return StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate, kkt, damage)
+        whole = StoreStatus(campaign.name, tuple(runs), None, None, None, None, None)
+    else:
+        count, kkt = tally(front, schema), convergence(front)
+        whole = StoreStatus(campaign.name, tuple(runs), count.points, count.agree, count.deviate, kkt, damage)
+    return _with_companion(whole, campaign, store) if campaign.nominal else whole
+
+
+def _with_companion(found: StoreStatus, campaign: Campaign, store: Store) -> StoreStatus:
+    """Add what the companion's store says."""
+    own, nominal = both_sides(campaign, store)
+    if not nominal.store.exists:
+        return replace(found, asks_nominal=True)
+    beside = None
+    if nominal.front() is not None:
+        points = nominal.points()
+        known = own.schema.evaluations(own.known(points, nominal.schema))
+        beside = BesideStatus(points.num_rows, len(known), int(own.problem.tell(known).feasible.sum()))
+    return replace(found, asks_nominal=True, nominal=read_status(nominal.store), beside=beside)

@@ -14,6 +14,7 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.fields import measure_of
 from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.nominal import nominal_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
@@ -35,11 +36,13 @@ class Asked:
         method: oat, morris or sobol.
         parameters: What is studied, `NAME` or `NAME=LOWER..UPPER`; what the campaign says where empty.
         count: Points, trajectories or samples; None for the campaign's.
+        alone: Whether a Sobol study goes without indices of pairs, whatever the campaign says.
     """
 
     method: str
     parameters: tuple[str, ...] = ()
     count: int | None = None
+    alone: bool = False
 
 
 def study_store(campaign_store: Store, name: str) -> Store:
@@ -64,16 +67,19 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
         asked: How.
 
     Returns:
-        The same model, objectives and constraints; its variables are the parameters studied, its only strategy the
-        sampling.
+        The same model, objectives and constraints, of a campaign with uncertainty the nominal ones; its variables
+        are the parameters studied, its only strategy the sampling.
 
     Raises:
         UsageError: A parameter or a count is wrong.
     """
     config = campaign.sensitivity
     options = _options(config, asked)
-    study = campaign.model_copy(
+    certain = campaign if campaign.uncertainty is None else nominal_campaign(campaign)
+    study = certain.model_copy(
         update={
+            "name": campaign.name,
+            "nominal": False,
             "variables": _ranges(campaign, asked),
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
             "sensitivity": SensitivityConfig(),
@@ -111,6 +117,10 @@ def run_study(
 def _options(config: SensitivityConfig, asked: Asked) -> Any:
     """The sampling with its options, its count replaced where another is asked for."""
     options: Any = getattr(config, asked.method)
+    if asked.alone and asked.method != "sobol":
+        raise UsageError(f"--no-second-order is of method sobol, not {asked.method}; leave it away")
+    if asked.alone:
+        options = dataclasses.replace(options, second_order=False)
     if asked.count is None:
         return options
     name = {"oat": "points", "morris": "trajectories", "sobol": "samples"}[asked.method]
@@ -132,8 +142,11 @@ def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float
 
 
 def _usual(campaign: Campaign, method: str) -> dict[str, tuple[float, float]]:
-    thesis = method == "oat" and isinstance(campaign.model, DividerConfig)
-    return dict(THESIS_RANGES if thesis else campaign.variables)
+    model = campaign.model
+    if method != "oat" or not isinstance(model, DividerConfig):
+        return dict(campaign.variables)
+    theirs = {name for scenario in model.scenarios.values() for name in scenario.set}
+    return {name: ends for name, ends in THESIS_RANGES.items() if name not in theirs}
 
 
 def _asked_range(

@@ -3,6 +3,8 @@
 from divideropt.report.comparison import comparison_data, comparison_table, comparison_text
 from divideropt.report.page import write_report
 from divideropt.report.response_page import Curve, ResponseCurves, response_page, write_response
+from divideropt.report.sensitivity_data import read_study
+from divideropt.report.sensitivity_page import study_text, write_study
 from divideropt.report.sweeps_page import write_sweeps
 
 __all__ = [
@@ -11,8 +13,11 @@ __all__ = [
     "comparison_data",
     "comparison_table",
     "comparison_text",
+    "read_study",
     "response_page",
+    "study_text",
     "write_report",
     "write_response",
+    "write_study",
     "write_sweeps",
 ]

@@ -2,7 +2,7 @@
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
@@ -18,6 +18,7 @@ from divideropt.analysis import (
     compare,
     convergence,
     marked,
+    spread,
     summarise,
 )
 from divideropt.analysis.summary import Best
@@ -30,13 +31,14 @@ from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.report.choosing import Choosing, choosing_of
+from divideropt.report.cost import Cost, read_cost
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
-from divideropt.report.sampling import spread
 from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_table
 from divideropt.report.setting import setting_of
+from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.store import Store, TableSchema
 
 MOST_DRAWN = 4000
@@ -48,6 +50,10 @@ MOST_ROWS = 1000
 LIBRARIES = ("divideropt", "numpy", "scipy", "numba", "pymoo", "moocore", "pandas", "pyarrow", "plotly", "jinja2")
 """Whose versions the report names: what computes, stores and draws."""
 
+COMPANION_NOTE = (
+    "The companion without scenarios and uncertainty, which the campaign asks for (`nominal: true`), has not ended: "
+    "what these cost is not known yet."
+)
 
 Reader = Callable[[pa.Table], tuple[Design, ...]]
 """Evaluations to designs."""
@@ -95,8 +101,10 @@ class ReportData:
         leanings: The bounds that the front leans on.
         responses: The step responses; None for a model that has none.
         scenarios: The best designs under each scenario; None where there is one, or no front.
+        cost: The companion's front beside this; None where there is none, or nothing to compare yet.
         notes: Sentences on the state of the store.
         versions: Versions of libraries by name.
+        studies: The campaign's sensitivity studies in short.
     """
 
     name: str
@@ -116,8 +124,10 @@ class ReportData:
     leanings: tuple[Leaning, ...]
     responses: Responses | None
     scenarios: UnderScenarios | None
+    cost: Cost | None
     notes: tuple[str, ...]
     versions: Mapping[str, str]
+    studies: tuple[StudySummary, ...] = ()
 
     @property
     def strategies(self) -> tuple[str, ...]:
@@ -170,6 +180,8 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     table = with_residuals({"combined": table}, campaign, problem, store)["combined"]
     table = marked(table, known, problem, schema, campaign.verification.share)
     front = designs_of(table, problem, schema, strategies)
+    cost = read_cost(campaign, store) if campaign.nominal else None
+    waiting = (COMPANION_NOTE,) if campaign.nominal and cost is None else ()
     best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
     return ReportData(
         campaign.name,
@@ -188,10 +200,17 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
-        read_scenarios(problem, table, worth_a_table(front, problem)),
-        _progress(facts, store) + notes,
+        _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
+        cost,
+        _progress(facts, store) + notes + waiting,
         {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+        study_summary(store),
     )
+
+
+def _with_companion(under: UnderScenarios | None, cost: Cost | None) -> UnderScenarios | None:
+    """Put the best of the companion's front beside those of the campaign's, scenario by scenario."""
+    return under if under is None or cost is None else replace(under, designs=(*under.designs, *cost.under))
 
 
 def _front(

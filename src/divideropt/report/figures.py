@@ -40,9 +40,9 @@ def front_3d(data: ReportData) -> go.Figure:
             mode="markers",
             marker={"color": mark.colour, "symbol": mark.shape, "size": 4, "opacity": mark.opacity},
             customdata=_ids(designs),
-            hovertemplate=_hover(dict(zip("xyz", first, strict=True))),
+            hovertemplate=hover(dict(zip("xyz", first, strict=True))),
         )
-    figure.add_scatter3d(**_ring(12), x=[], y=[], z=[])
+    figure.add_scatter3d(**ring(12), x=[], y=[], z=[])
     axes = {f"{k}axis": {"title": {"text": label(o)}} for k, o in zip("xyz", first, strict=True)}
     figure.update_layout(
         scene=axes
@@ -171,16 +171,17 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
             mode="markers",
             marker={"color": mark.colour, "symbol": mark.shape, "size": 6, "opacity": mark.opacity},
             customdata=_ids(designs),
-            hovertemplate=_hover({"x": first, "y": second}),
+            hovertemplate=hover({"x": first, "y": second}),
         )
-    figure.add_scatter(**_ring(13), x=[], y=[])
+    figure.add_scatter(**ring(13), x=[], y=[])
     figure.update_xaxes(title_text=label(first), rangemode="normal")
     figure.update_yaxes(title_text=label(second))
-    figure.update_layout(shapes=list(_goal_lines(first, second)))
+    figure.update_layout(shapes=list(goal_lines(first, second)))
     return figure
 
 
-def _goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[str, Any]]:
+def goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[str, Any]]:
+    """Lines at the goals of two objectives, as far as there are any."""
     style = {"type": "line", "line": {"dash": "dot", "width": 1.4}}
     if first.goal is not None:
         at = first.axis.scaled(first.goal)
@@ -234,14 +235,15 @@ def _ids(designs: Sequence[Design]) -> NDArray[np.object_]:
     return np.array([plain(design.design_id) for design in designs], dtype=object)
 
 
-def _hover(axes: Mapping[str, ObjectiveFacts]) -> str:
+def hover(axes: Mapping[str, ObjectiveFacts]) -> str:
+    """What is shown of a point under the pointer, by its axes `x`, `y`, `z`."""
     lines = [
         f"{plain(facts.axis.words)} %{{{key}:.4~g}} {plain(facts.axis.shown.unit)}" for key, facts in axes.items()
     ]
     return "<br>".join(["<b>%{customdata}</b>", *lines]) + "<extra></extra>"
 
 
-def _ring(size: float) -> dict[str, Any]:
+def ring(size: float) -> dict[str, Any]:
     """Begin the trace that rings the selected design."""
     return {
         "name": SELECTION,

@@ -6,6 +6,8 @@ from typing import Any
 
 from divideropt.analysis import Summary
 from divideropt.report.comparison_figure import comparison_figure
+from divideropt.report.cost_figure import FRONTS, cost_figures, kind_of
+from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.display import number, rounded
@@ -19,9 +21,10 @@ from divideropt.report.figures import (
     residuals,
 )
 from divideropt.report.front import Design
-from divideropt.report.palette import marks
+from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
+from divideropt.report.sensitivity_figures import index_bars
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
@@ -60,6 +63,8 @@ def render_report(data: ReportData) -> str:
         data=data,
         figures={figure["id"]: figure for figure in figures},
         projections=[figure for figure in figures if figure["id"].startswith("projection")],
+        costs=[figure for figure in figures if figure["id"].startswith("cost")],
+        cost_marks=_cost_marks(data),
         marks=marks(data.strategies),
         counts={name: sum(d.strategy == name for d in data.front) for name in data.strategies},
         tables={
@@ -70,6 +75,9 @@ def render_report(data: ReportData) -> str:
             "choosing": choosing_table(data),
             "strategies": strategies_table(data),
             "tests": rank_table(data),
+            "bests": bests_table(data),
+            "reasons": reasons_table(data),
+            "volumes": volumes_table(data),
         },
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
@@ -86,6 +94,10 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found += _front_figures(data)
     if any(run.hypervolumes for run in data.runs):
         found.append(drawn("hypervolume", hypervolume(data)))
+    if data.cost is not None:
+        for pair, figure in cost_figures(data):
+            names = " and ".join(data.objectives[i].axis.words for i in pair)
+            found.append(drawn(f"cost-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
     if data.kkt.computed:
         found.append(drawn("residuals", residuals(data)))
     if len(data.objectives) == 1:
@@ -94,6 +106,10 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:
         found.append(drawn("response", step_figure(data.responses)))
+    for study in data.studies:
+        if study.sobol is not None and study.sobol.objectives:
+            sobol = study.sobol
+            found.append(drawn(f"study-{study.name}", index_bars(sobol.indices, sobol.objectives, sobol.variables)))
     return found
 
 
@@ -106,6 +122,15 @@ def _front_figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
     found.append(drawn("parallel", parallel_coordinates(data), webgl=True))
     return found
+
+
+def _cost_marks(data: ReportData) -> list[tuple[Mark, str, int]]:
+    """The marks of the fronts in the figures of what robustness costs, with words and a count."""
+    kinds = [kind_of(place) for place in data.cost.placed] if data.cost else []
+    return [
+        (Mark(COLOURS.index(colour), shape), words, kinds.count(kind))
+        for kind, (words, colour, shape) in FRONTS.items()
+    ]
 
 
 def _selection(data: ReportData) -> dict[str, Any]:

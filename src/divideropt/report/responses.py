@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from divideropt.analysis import spread
 from divideropt.campaign.plan import dividers
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETER_SETS, parameter_set
@@ -15,7 +16,7 @@ from divideropt.ode import SolverStatus
 from divideropt.problem import Problem
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
-from divideropt.report.sampling import spread, thin
+from divideropt.report.sampling import thin
 
 MOST_RESPONSES = 200
 """Designs whose response the page holds; each costs a simulation and about 3 kB."""

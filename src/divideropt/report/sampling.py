@@ -1,7 +1,6 @@
-"""Few instead of many: points that keep a curve's shape, and designs spread evenly along a front."""
+"""Few instead of many: points that keep a curve's shape."""
 
 import heapq
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,36 +34,6 @@ def thin(times: FloatArray, values: FloatArray, count: int, tolerance: float) ->
     return np.array(sorted(kept), dtype=np.intp)
 
 
-def spread(points: FloatArray, first: Sequence[int], count: int) -> list[int]:
-    """Choose points far from each other: after the first ones, always the one farthest from all chosen.
-
-    Args:
-        points: Shape (n, k).
-        first: Rows that are chosen anyway.
-        count: How many rows to choose in all.
-
-    Returns:
-        Distinct rows, those of `first` in front; the same for the same input.
-    """
-    chosen = list(dict.fromkeys(first))[:count]
-    if len(points) <= count:
-        return chosen + [i for i in range(len(points)) if i not in set(chosen)]
-    width = np.ptp(points, axis=0)
-    places = np.ascontiguousarray(((points - points.min(axis=0)) / np.where(width > 0.0, width, 1.0)).T)
-    if not chosen:
-        chosen = [0]
-    gap = np.full(len(points), np.inf)
-    for row in chosen:
-        gap = np.minimum(gap, _distances(places, row))
-    gap[chosen] = -1.0  # also where designs coincide, none is chosen twice
-    while len(chosen) < count:
-        row = int(np.argmax(gap))
-        chosen.append(row)
-        gap = np.minimum(gap, _distances(places, row))
-        gap[row] = -1.0
-    return chosen
-
-
 def _worst(times: FloatArray, values: FloatArray, begin: int, end: int) -> tuple[float, int, int, int]:
     """Find where the chord over a stretch is farthest from the curves: (minus the deviation, begin, there, end)."""
     if end - begin < 2:
@@ -76,8 +45,3 @@ def _worst(times: FloatArray, values: FloatArray, begin: int, end: int) -> tuple
     deviation = np.abs(values[inside] - chord).max(axis=1)
     worst = int(np.argmax(deviation))
     return -float(deviation[worst]), begin, begin + 1 + worst, end
-
-
-def _distances(places: FloatArray, column: int) -> FloatArray:
-    """Squared distances of points, shape (k, n), from one of them."""
-    return np.asarray(sum((coordinate - coordinate[column]) ** 2 for coordinate in places))

@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
+from divideropt.analysis import Sweep
 from divideropt.models.base import FloatArray
 from divideropt.report.display import Axis, rounded
 from divideropt.report.figures import layout, plain
@@ -25,7 +26,7 @@ MARGIN = 0.05
 """Above and below the flows in the zoom, in parts of their range."""
 
 MOST_DRAWN = 400
-"""Designs of a sweep that are drawn, evenly spread; failed ones are all marked."""
+"""Designs of a sweep that a line has, and crosses that mark failed ones, evenly spread; a band marks all of these."""
 
 MOST_NUMBERS = 300_000
 """Numbers of all quantities over all parameters in a page [a number takes ten bytes]."""
@@ -62,13 +63,12 @@ def step_zoom_figure(part: SweepFacts) -> go.Figure:
 
 def errors_figure(part: SweepFacts) -> go.Figure:
     """Draw steady, dynamic and total error in percent."""
-    return _over(part, [(words, part.sweep.sound(name)) for name, words in _LINES], "error at t_cum [%]", "%")
+    return _over(part, _LINES, 1.0, "error at t_cum [%]", "%")
 
 
 def quantity_figure(part: SweepFacts, axis: Axis) -> go.Figure:
     """Draw one quantity."""
-    values = part.sweep.sound(axis.name) * axis.shown.scale
-    return _over(part, [(axis.words, values)], plain(axis.label), axis.shown.unit)
+    return _over(part, ((axis.name, axis.words),), axis.shown.scale, plain(axis.label), axis.shown.unit)
 
 
 def panels_figure(data: SweepsData, name: str) -> go.Figure:
@@ -83,29 +83,33 @@ def panels_figure(data: SweepsData, name: str) -> go.Figure:
     numbers = panel_numbers(data)[name]
     for i, part in enumerate(data.parts):
         place = {"row": i // columns + 1, "col": i % columns + 1}
-        x, failed = _drawn(data, part)
-        line, crosses = numbers["y"][2 * i], numbers["y"][2 * i + 1]
-        figure.add_scatter(**_line(_shown(part, x), line, part.axis.words, 0), **place)
+        rows_drawn, failed = _drawn(data, part)
+        line, circles, crosses = numbers["y"][3 * i : 3 * i + 3]
+        figure.add_scatter(**_line(_shown(part, rows_drawn), line, part.axis.words, 0), **place)
+        figure.add_scatter(**_circles(part, failed, circles, 0), **place)
         figure.add_scatter(**_crosses(part, failed, crosses), **place)
         figure.update_xaxes(title_text=plain(_short(part.axis)), range=_range(part), **place)
         suffix = str(i + 1) if i else ""
         shapes += _marks(part, f"x{suffix}", f"y{suffix} domain")
         if place["col"] == 1:
             figure.update_yaxes(title_text=numbers["label"], **place)
+    figure.update_yaxes(range=numbers["range"])
     figure.update_layout(shapes=shapes)
     return figure
 
 
 def panel_numbers(data: SweepsData) -> Mapping[str, Mapping[str, Any]]:
-    """Give what the panels show of each quantity: the label, and of each parameter line and crosses."""
+    """Give what the panels show of each quantity: label, range, and of each parameter line, circles and crosses."""
     found = {}
     for name, axis in data.quantities.items():
-        lines = [part.sweep.sound(name)[_drawn(data, part)[0]] * axis.shown.scale for part in data.parts]
-        floor = _floor(np.concatenate(lines))
+        low, high = _extent([part.sweep for part in data.parts], [name], axis.shown.scale)
         traces: list[list[float | None]] = []
-        for part, line in zip(data.parts, lines, strict=True):
-            traces += [_numbers(line), _numbers(np.full(part.sweep.failed, floor))]
-        found[name] = {"label": plain(axis.label), "y": traces}
+        for part in data.parts:
+            rows, failed = _drawn(data, part)
+            traces.append(_numbers(part.sweep.sound(name)[rows] * axis.shown.scale))
+            traces.append(_numbers(part.sweep.quantities[name][failed] * axis.shown.scale))
+            traces.append(_numbers(np.full(len(failed), low)))
+        found[name] = {"label": plain(axis.label), "range": _around_extent(low, high), "y": traces}
     return found
 
 
@@ -113,12 +117,12 @@ def _responses_figure(responses: Sequence[ValueResponse], begin: float, end: flo
     figure = go.Figure(layout=layout(height=380, margin={"l": 62, "r": 12, "t": 12, "b": 52}))
     for i, response in enumerate(responses):
         curve = response.curve
-        times = np.array([] if curve is None else curve.times)
+        if curve is None:
+            continue
+        times = np.array(curve.times)
         kept = _around(times, begin, end)
-        outcome = "" if response.verdict.ok else f" ({response.verdict.outcome})"
-        name = plain(f"{curve.name if curve else ''}{outcome}")
-        for number in (0, 1) if curve is not None else ():
-            assert curve is not None
+        name = plain(curve.name if response.verdict.ok else f"{curve.name} ({response.verdict.outcome})")
+        for number in (0, 1):
             figure.add_scatter(
                 x=times[kept],
                 y=np.array(curve.flows[number])[kept],
@@ -141,23 +145,28 @@ _LEGEND = {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor"
 def _around(times: FloatArray, begin: float, end: float) -> NDArray[np.bool_]:
     """Which points of a line to draw: those in a window, and its neighbours on either side."""
     inside = (times >= begin) & (times <= end)
-    return inside | np.roll(inside, 1) | np.roll(inside, -1) if inside.any() else inside
+    kept = inside.copy()
+    kept[1:] |= inside[:-1]
+    kept[:-1] |= inside[1:]
+    return kept
 
 
-def _over(part: SweepFacts, lines: Sequence[tuple[str, FloatArray]], title: str, unit: str) -> go.Figure:
-    """Draw lines over a parameter."""
+def _over(part: SweepFacts, lines: Sequence[tuple[str, str]], scale: float, title: str, unit: str) -> go.Figure:
+    """Draw quantities over a parameter, each by its name and its words."""
     figure = go.Figure(layout=layout(height=320, margin={"l": 62, "r": 12, "t": 12, "b": 52}))
-    rows = _thinned(len(part.sweep.values), MOST_DRAWN)
-    failed = np.flatnonzero(~part.sweep.ok)
-    for i, (words, values) in enumerate(lines):
-        trace = _line(_shown(part, rows), _numbers(values[rows]), words, i)
+    sweep, failed = part.sweep, _failed(part)
+    rows = _thinned(len(sweep.values), MOST_DRAWN)
+    low, high = _extent([sweep], [name for name, _ in lines], scale)
+    for i, (name, words) in enumerate(lines):
         hover = f"{plain(words)} %{{y:.4~g}} {plain(unit)}<br>{plain(_short(part.axis))} %{{x:.4~g}}<extra></extra>"
-        figure.add_scatter(**trace | {"hovertemplate": hover})
-    floor = _floor(np.concatenate([values for _, values in lines]))
+        line = _line(_shown(part, rows), _numbers(sweep.sound(name)[rows] * scale), words, i)
+        figure.add_scatter(**line | {"hovertemplate": hover})
+        if len(failed):
+            figure.add_scatter(**_circles(part, failed, _numbers(sweep.quantities[name][failed] * scale), i))
     if len(failed):
-        figure.add_scatter(**_crosses(part, failed, _numbers(np.full(len(failed), floor))))
+        figure.add_scatter(**_crosses(part, failed, _numbers(np.full(len(failed), low))))
     figure.update_xaxes(title_text=plain(part.axis.label), range=_range(part))
-    figure.update_yaxes(title_text=title, zeroline=True)
+    figure.update_yaxes(title_text=title, zeroline=True, range=_around_extent(low, high))
     figure.update_layout(shapes=_marks(part, "x", "paper"))
     if len(lines) > 1 or len(failed):
         figure.update_layout(showlegend=True, legend=_LEGEND)
@@ -175,6 +184,18 @@ def _line(x: FloatArray, y: Sequence[float | None], words: str, place: int) -> d
         "line": {"color": COLOURS[place], "dash": DASHES[place], "width": 2},
         "connectgaps": False,
         "hovertemplate": "%{x:.4~g}<br>%{y:.4~g}<extra></extra>",
+    }
+
+
+def _circles(part: SweepFacts, failed: NDArray[np.intp], y: Sequence[float | None], place: int) -> dict[str, Any]:
+    """What a failed design has all the same, where it is defined: no part of the line."""
+    return {
+        "x": _shown(part, failed),
+        "y": y,
+        "mode": "markers",
+        "marker": {"color": COLOURS[place], "symbol": "circle-open", "size": 5},
+        "showlegend": False,
+        "hovertemplate": "failed, yet %{y:.4~g}<extra></extra>",
     }
 
 
@@ -217,7 +238,12 @@ def _marks(part: SweepFacts, xref: str, yref: str) -> list[dict[str, Any]]:
 def _drawn(data: SweepsData, part: SweepFacts) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows of a sweep that the panels draw as a line, and those that they mark as failed."""
     share = MOST_NUMBERS // max(1, len(data.parts) * len(data.quantities))
-    return _thinned(len(part.sweep.values), min(MOST_DRAWN, max(share, 2))), np.flatnonzero(~part.sweep.ok)
+    return _thinned(len(part.sweep.values), min(MOST_DRAWN, max(share, 2))), _failed(part)
+
+
+def _failed(part: SweepFacts) -> NDArray[np.intp]:
+    rows = np.flatnonzero(~part.sweep.ok)
+    return rows[_thinned(len(rows), MOST_DRAWN)]
 
 
 def _thinned(count: int, most: int) -> NDArray[np.intp]:
@@ -238,13 +264,25 @@ def _range(part: SweepFacts) -> list[float]:
     return [low - 0.02 * (high - low), high + 0.02 * (high - low)]
 
 
-def _floor(values: FloatArray) -> float:
-    """Where failed designs are marked: a little below all that is drawn."""
-    known = values[np.isfinite(values)]
-    if not len(known):
-        return 0.0
-    extent = float(np.ptp(known)) or abs(float(known[0])) or 1.0
-    return float(known.min()) - 0.07 * extent
+def _extent(sweeps: Sequence[Sweep], names: Sequence[str], scale: float) -> tuple[float, float]:
+    """From where failed designs are marked, a little below the rest, to the greatest value.
+
+    The rest is what the designs that ended well have, or where there is none what all have.
+    """
+    for values in (
+        np.concatenate([sweep.sound(name) for sweep in sweeps for name in names]),
+        np.concatenate([sweep.quantities[name] for sweep in sweeps for name in names]),
+    ):
+        known = values[np.isfinite(values)] * scale
+        if len(known):
+            extent = float(np.ptp(known)) or abs(float(known[0])) or 1.0
+            return rounded(float(known.min()) - 0.07 * extent), rounded(float(known.max()))
+    return 0.0, 1.0
+
+
+def _around_extent(low: float, high: float) -> list[float]:
+    """The range of an axis: marks and values, and a little more."""
+    return [rounded(low - 0.05 * (high - low)), rounded(high + 0.05 * (high - low))]
 
 
 def _alone(y: Iterable[float | None]) -> bool:

@@ -23,17 +23,15 @@ MOST_STRETCHES = 3
 
 def summary_table(data: SweepsData) -> Table:
     """List for each parameter the range and the effect on the chosen quantities, and where it fails."""
-    headings = [Heading("parameter", numeric=False)]
+    headings = [Heading("parameter", numeric=False), Heading("failed", numeric=False)]
     for name in data.chosen:
         axis = data.quantities[name]
         headings.append(Heading(axis.words, " ".join(p for p in (axis.symbol, axis.bracket) if p), axis.description))
-    headings.append(Heading("failed", numeric=False))
     rows = []
     for part in data.parts:
         found = {effect.quantity: effect for effect in part.effects}
-        cells = [Cell(f"{part.axis.words} {part.axis.symbol}".rstrip())]
+        cells = [Cell(f"{part.axis.words} {part.axis.symbol}".rstrip()), Cell(failed_words(part))]
         cells += [_effect_cell(found[name], data.quantities[name]) for name in data.chosen]
-        cells.append(Cell(failed_words(part)))
         rows.append(Row("", tuple(cells)))
     return Table(tuple(headings), tuple(rows))
 
@@ -68,6 +66,8 @@ def effects_table(part: SweepFacts, data: SweepsData) -> Table:
 
 def moved(part: SweepFacts, quantities: Mapping[str, Axis]) -> str:
     """Name the quantities that a parameter moves most, of those that are proportional to each other the first."""
+    if not any(math.isfinite(effect.relative) for effect in part.effects):
+        return "not known: the campaign's own design, or every design here, failed"
     named: list[Effect] = []
     for effect in part.effects:
         again = any(math.isclose(effect.relative, other.relative, rel_tol=PROPORTIONAL) for other in named)

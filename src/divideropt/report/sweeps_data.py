@@ -223,9 +223,11 @@ def _total(quantities: Mapping[str, FloatArray]) -> FloatArray:
 
 
 def _axes(quantities: Mapping[str, Quantity], sweeps: Sequence[Sweep]) -> list[tuple[str, Axis]]:
+    """How quantities are shown: by the designs that ended well, or by all where none did."""
     found = []
     for name, quantity in quantities.items():
-        values = np.concatenate([np.empty(0), *(sweep.sound(name) for sweep in sweeps)])
-        if not quantity.logical and np.isfinite(values).any():
-            found.append((name, signed_axis(quantity, values)))
+        whole = np.concatenate([np.empty(0), *(sweep.quantities[name] for sweep in sweeps)])
+        sound = np.concatenate([np.empty(0), *(sweep.sound(name) for sweep in sweeps)])
+        if not quantity.logical and np.isfinite(whole).any():
+            found.append((name, signed_axis(quantity, sound if np.isfinite(sound).any() else whole)))
     return found

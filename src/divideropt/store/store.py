@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from copy import copy
 from datetime import UTC, datetime
 from pathlib import Path
@@ -191,6 +191,12 @@ class Store:
         remedy = f"restore it, or delete {folder}, and the neighbours are simulated again"
         return Parts(folder, schema.results, remedy, lambda table, first: schema.objection(table), self._check_owner)
 
+    def beside(self, schema: TableSchema) -> Parts:
+        """Open the results of the other front's points: of the companion's in a campaign's store, and back."""
+        folder = self._part_of_store("beside")
+        remedy = f"restore it, or delete {folder}, and its points are simulated again"
+        return Parts(folder, schema.results, remedy, lambda table, first: schema.objection(table), self._check_owner)
+
     @contextmanager
     def writing(self) -> Iterator[None]:
         """Hold the store for writing: as long as this lasts, this process and those it hands the store to publish.
@@ -244,8 +250,11 @@ class Store:
         stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
         names = (f"{whole.name}.before-{stamp}{more}" for more in ("", *(f"-{i}" for i in range(2, 1000))))
         aside = next(path for path in map(whole.with_name, names) if not path.exists())
-        with self._locked(), disk_errors(self.folder):
-            whole.rename(aside)
+        with ExitStack() as held:
+            for store in (self, *self._nested()):
+                held.enter_context(store._locked())
+            with disk_errors(self.folder):
+                whole.rename(aside)
         return aside
 
     @property
@@ -260,7 +269,7 @@ class Store:
     def _make_ready(self) -> None:
         """Find what would be in the way later, and clear what killed writers left."""
         logs = self._part_of_store("evaluations")
-        parts = [self._part_of_store(name) for name in ("fronts", "verification", "endings", "optimality")]
+        parts = [self._part_of_store(name) for name in ("fronts", "verification", "endings", "optimality", "beside")]
         self._part_of_store(self.status_folder.name)
         runs = [self._part_of_store(logs.name, path.name) for path in logs.glob("[!.]*")]
         for folder in (self.folder, logs, *runs, *parts):
@@ -268,6 +277,10 @@ class Store:
         for front in sorted(parts[0].glob("[!.]*.parquet")):
             check_replaceable(front)
         check_links(self.folder)
+
+    def _nested(self) -> "list[Store]":
+        """The stores within this one, a folder or two below, which somebody may be writing to."""
+        return [Store(path.parent) for depth in ("*", "*/*") for path in self.folder.glob(f"{depth}/campaign.yaml")]
 
     def _part_of_store(self, *names: str) -> Path:
         """Name a folder of the store, and make sure that neither it nor one above it is a file."""

@@ -247,7 +247,7 @@
       button.addEventListener("click", () => sort(table, button.closest("th")));
     }
     table.addEventListener("keydown", onKey);
-    for (const rows of document.querySelectorAll("#front-table tbody, #best tbody, #choosing-table tbody")) {
+    for (const rows of document.querySelectorAll("#front-table tbody, #best tbody, #choosing-table tbody, #cost-bests tbody")) {
       rows.addEventListener("click", (event) => {
         const row = event.target.closest("tr[data-id]");
         if (row) select(row.dataset.id);
@@ -263,7 +263,9 @@
     const chosen = report.quantities[name];
     figure.data.forEach((trace, i) => { trace.y = chosen.y[i]; });
     for (const [key, axis] of Object.entries(figure.layout)) {
-      if (/^yaxis/.test(key) && axis.title) axis.title.text = chosen.label;
+      if (!/^yaxis/.test(key)) continue;
+      axis.range = [...chosen.range];
+      if (axis.title) axis.title.text = chosen.label;
     }
     figure.layout.uirevision = name; // what was zoomed is another's
     return redraw(figure);
@@ -281,6 +283,11 @@
     for (const figure of pictures) await draw(figure, able); // last: they take longest, the rest is there already
     for (const media of ["(prefers-color-scheme: dark)", "print"]) {
       window.matchMedia(media).addEventListener("change", () => shown.forEach(redraw));
+    }
+    for (const details of document.querySelectorAll("details")) {
+      details.addEventListener("toggle", () => { // what was folded away when it was drawn had no width
+        for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
+      });
     }
     document.documentElement.dataset.drawn = "yes";
   }

@@ -1,0 +1,200 @@
+"""Studies by the command's own path, their pages in a browser, and what the campaign's report says of them."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from browsing import Opened, quiet
+from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.runner import Runner
+from divideropt.campaign.study import Asked, run_study, study_of, study_store
+from divideropt.errors import UsageError
+from divideropt.report import read_study, study_text, write_report, write_study
+from divideropt.report.house_words import house_rows
+from divideropt.report.sensitivity_page import render_study
+from divideropt.store import Store
+from sensitivity_models import g_indices, ishigami_indices
+
+PI = "3.141592653589793"
+ISHIGAMI = f"""
+name: ishigami
+model: {{kind: "sensitivity_models:Ishigami"}}
+variables: {{x1: [-{PI}, {PI}], x2: [-{PI}, {PI}], x3: [-{PI}, {PI}]}}
+objectives: {{f: {{weight: 2}}}}
+strategies: {{nsga2: {{population: 8, generations: 2, seeds: [1]}}}}
+parallel: {{backend: sequential}}
+"""
+G = """
+name: g
+model: {kind: "sensitivity_models:GFunction"}
+variables: {x1: [0, 1], x2: [0, 1], x3: [0, 1], x4: [0, 1], x5: [0, 1], x6: [0, 1]}
+objectives: {g: {}}
+strategies: {nsga2: {population: 8, generations: 2, seeds: [1]}}
+parallel: {backend: sequential}
+"""
+FAILING = """
+name: failing
+model: {kind: "sensitivity_models:Failing"}
+variables: {x1: [0, 1], x2: [0, 1], x3: [0, 1]}
+objectives: {lost: {}}
+constraints: {kept: {min: 1}}
+strategies: {nsga2: {population: 8, generations: 2, seeds: [1]}}
+parallel: {backend: sequential}
+"""
+DIVIDER = Path(__file__).parents[2] / "campaigns" / "divider.yaml"
+
+
+def studied(text: str, folder: Path, method: str, count: int) -> Store:
+    campaign = parse_campaign(text)
+    store = study_store(Store(folder), method)
+    run_study(study_of(campaign, Asked(method, (), count)), store, 1, io.StringIO(), "again")
+    return store
+
+
+@pytest.fixture(scope="module")
+def valve(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    """A Sobol study of the divider; not to be changed."""
+    return studied(DIVIDER.read_text(), tmp_path_factory.mktemp("valve") / "divider", "sobol", 64)
+
+
+@pytest.mark.parametrize(("text", "closed"), [(ISHIGAMI, ishigami_indices()), (G, g_indices())])
+def test_closed_forms_are_within_the_intervals_of_a_study(text, closed, tmp_path):
+    """Every single 95 % interval holds its closed form; none is widened for their number."""
+    store = studied(text, tmp_path / "study", "sobol", 4096)
+    write_study(store)
+    table = pd.read_parquet(store.folder / "indices.parquet")
+    first, total, second = closed
+    table = table[(table["samples"] == 4096) & ~table["quantity"].isin(["outcome"])]
+    exact = [
+        second[row.variable, row.with_] if row.kind == "S2" else {"S1": first, "ST": total}[row.kind][row.variable]
+        for row in table.rename(columns={"with": "with_"}).itertuples()
+    ]
+    assert len(table) == 2 * len(first) + len(second)
+    assert ((table["low"] <= exact) & (table["high"] >= exact)).all()
+
+
+def test_a_study_without_failures_is_drawn(opened: Callable[..., Opened], tmp_path):
+    store = studied(ISHIGAMI, tmp_path / "study", "sobol", 256)
+    page = opened(render_study(read_study(store)))
+    quiet(page)
+    assert page.count("#bars .bars .point") == 6
+    assert page.count("#interactions .annotation") >= 3
+    assert page.count("#convergence .scatterlayer .trace") == 3
+    assert "No design failed" in page.page.locator("#failed").inner_text()
+    assert page.page.locator("#undefined li").all_inner_texts() == [
+        "outcome ok: it is constant",
+        "constant: it is constant",
+    ]
+    headings = page.page.locator(".house tbody tr td:first-child").all_inner_texts()
+    assert [text for text in headings if text] == ["f"]
+
+
+def test_failures_and_treatments_are_told(opened: Callable[..., Opened], tmp_path):
+    store = studied(FAILING, tmp_path / "study", "sobol", 256)
+    data = read_study(store)
+    page = opened(render_study(data))
+    quiet(page)
+    text = page.page.locator("#failed").inner_text()
+    assert f"{data.failures.total} of 2048 designs failed: {data.failures.total} unsettled (25 %)" in text
+    assert page.count("#failures .annotation") == 30
+    rows = page.page.locator(".treatments tbody td:first-child").all_inner_texts()
+    assert rows == ["working", "worst", "working", "simulated", "worst"]
+    assert "lost, simulated: it is defined throughout in" in page.page.locator("#undefined").inner_text()
+
+
+def test_the_folded_figure_is_drawn_at_the_pages_width_when_unfolded(opened: Callable[..., Opened], valve):
+    page = opened(render_study(read_study(valve)))
+    quiet(page)
+    page.page.locator("#more summary").click()
+    wide = page.page.locator("#bars .main-svg").first.bounding_box()["width"]
+    page.page.wait_for_function(
+        f"document.querySelector('#more-bars .main-svg').getBoundingClientRect().width >= {wide - 1}"
+    )
+
+
+def test_the_house_stands_beside_the_authors(opened: Callable[..., Opened], valve):
+    data = read_study(valve)
+    page = opened(render_study(data))
+    rows = page.page.locator(".house tbody tr").all_inner_texts()
+    assert [row.split("\t")[0] for row in rows[:5]] == [
+        "steady-state error",
+        "dynamic error",
+        "pressure losses",
+        "stability",
+        "cost a judgement",
+    ]
+    assert [row.split("\t")[1] for row in rows[:5]] == ["3", "3", "1", "D", "–"]
+    bracketed = [[cell.author for cell in row.cells] for row in house_rows(data.house)]
+    assert bracketed[:4] == [list("43421"), list("33423"), list("01423"), list("42311")]
+    marked = page.count(".house td.differs")
+    assert marked == sum(d != 0 for d in data.house.differences) > 0
+
+
+def test_a_morris_study_is_drawn(opened: Callable[..., Opened], tmp_path):
+    store = studied(FAILING, tmp_path / "study", "morris", 40)
+    write_study(store)
+    assert set(pd.read_parquet(store.folder / "indices.parquet")["kind"]) == {"mu", "mu_star", "sigma"}
+    page = opened((store.folder / "report.html").read_text())
+    quiet(page)
+    assert page.count("#effects .scatterlayer .point") == 3
+    assert page.count("#house") == 0
+    assert "gives no effect" in page.page.locator("#failed").inner_text()
+
+
+def test_the_text_has_the_numbers_and_the_house(valve):
+    data = read_study(valve)
+    text = study_text(data)
+    assert f"{data.failures.total} of 768 designs failed" in text
+    found = data.first("source_pressure", "ST").loc["centred_opening"]
+    assert f"{found['value']:.2f} ± {found['high'] - found['value']:.2f}" in text
+    assert "House of Quality" in text
+    assert text.splitlines()[-1].startswith("Worth optimising: ")
+
+
+def test_effects_are_told_in_the_quantitys_unit(tmp_path):
+    store = studied(DIVIDER.read_text(), tmp_path / "study", "morris", 10)
+    text = study_text(read_study(store))
+    assert "magnitude of dynamic error [mL]: mu_star and sigma" in text
+    assert "source pressure [MPa]" in text or "source pressure [GPa]" in text
+
+
+def test_the_campaigns_report_shows_its_studies(opened: Callable[..., Opened], tmp_path):
+    folder = tmp_path / "whole"
+    store = Runner(parse_campaign(ISHIGAMI), folder, 1, io.StringIO()).run().store
+    study = studied(ISHIGAMI, folder, "sobol", 64)
+    studied(ISHIGAMI, folder, "morris", 10)
+    write_study(study)
+    page = opened(write_report(store).read_text())
+    assert page.errors == page.requests == []
+    assert page.count("#study-sobol .bars .point") == 6
+    links = page.page.eval_on_selector_all("#sensitivity a", "found => found.map(a => a.getAttribute('href'))")
+    assert links == ["sensitivity/sobol/report.html"], "a study without a page is named and not linked"
+    assert (folder / links[0]).is_file()
+    assert "Morris" in page.page.locator("#sensitivity").inner_text()
+
+
+def test_an_unfinished_study_says_so(tmp_path):
+    campaign = parse_campaign(ISHIGAMI)
+    store = studied(ISHIGAMI, tmp_path / "study", "sobol", 64)
+    larger = study_of(campaign, Asked("sobol", (), 128))
+    store.write_campaign(dump_campaign(larger))
+    data = read_study(store)
+    assert data.notes == ("Not finished: 512 of 1024 designs are simulated.",)
+    assert data.units == 64
+
+
+def test_what_is_no_study_is_refused(tmp_path):
+    store = Runner(parse_campaign(ISHIGAMI), tmp_path / "whole", 1, io.StringIO()).run().store
+    with pytest.raises(UsageError, match="strategies nsga2: no sensitivity study"):
+        write_study(store)
+
+
+def test_the_same_data_give_the_same_page(valve):
+    one, other = read_study(valve), read_study(valve)
+    assert render_study(one) == render_study(other)
+    np.testing.assert_array_equal(one.indices["low"], other.indices["low"])
