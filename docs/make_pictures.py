@@ -23,7 +23,8 @@ def main(store: Path) -> None:
         )
         page = browser.new_page(viewport={"width": 1280, "height": 1000}, color_scheme="light")
         page.goto(report.as_uri())
-        page.wait_for_function("document.querySelectorAll('.js-plotly-plot canvas').length > 0")
+        page.locator("#front").scroll_into_view_if_needed()  # it is drawn where it is looked at
+        page.wait_for_selector("#front[data-drawn]")
         page.wait_for_timeout(5000)  # WebGL without a graphics card takes its time
         page.locator("#the-front").screenshot(path=PICTURE)
         browser.close()

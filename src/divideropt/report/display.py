@@ -59,6 +59,8 @@ class Axis:
         symbol: Symbol beside the name, "" if it has none.
         description: What it is, in a line.
         shown: The unit shown.
+        unit: The platform's unit, "" if it has none.
+        magnitude: Whether a signed column is shown by its magnitude.
     """
 
     name: str
@@ -66,11 +68,18 @@ class Axis:
     symbol: str
     description: str
     shown: Shown
+    unit: str = ""
+    magnitude: bool = False
 
     @property
     def label(self) -> str:
         """Words, symbol and unit: `spool radius r [mm]`."""
         return " ".join(part for part in (self.words, self.symbol, self.bracket) if part)
+
+    @property
+    def detail(self) -> str:
+        """Symbol and unit: `r [mm]`."""
+        return " ".join(part for part in (self.symbol, self.bracket) if part)
 
     @property
     def bracket(self) -> str:
@@ -104,10 +113,12 @@ def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
         values: Values it takes, by which the unit is chosen.
     """
     symbol = re.sub(r",?\s*\(\d+\.\d+\)", "", entry.symbol).strip()
-    if isinstance(entry, Quantity) and entry.signed and symbol:
+    magnitude = isinstance(entry, Quantity) and entry.signed
+    if magnitude and symbol:
         symbol = f"|{symbol}|"
     symbol = symbol if symbol.strip("|") else ""  # of a magnitude that has none
-    return Axis(entry.name, _words_of(entry.name), symbol, entry.description, shown_as(entry.unit, values))
+    words, shown = _words_of(entry.name), shown_as(entry.unit, values)
+    return Axis(entry.name, words, symbol, entry.description, shown, entry.unit, magnitude)
 
 
 def _words_of(name: str) -> str:

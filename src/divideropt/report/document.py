@@ -26,6 +26,21 @@ CONFIG: Mapping[str, Any] = {
 }
 """What every figure is drawn with."""
 
+SCRIPTS = (
+    "page.js",
+    "designs.js",
+    "selection.js",
+    "figures.js",
+    "parallel.js",
+    "brushes.js",
+    "closely.js",
+    "tables.js",
+    "bar.js",
+    "fragment.js",
+    "report.js",
+)
+"""The page's script in its parts, one idea each; they share one scope, in this order."""
+
 _ESCAPES = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029"})
 
 
@@ -34,13 +49,13 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
 
     Args:
         template: Its file's name.
-        payload: What report.js draws.
+        payload: What the page's script draws.
         context: What the template shows; plain strings are escaped.
 
     Returns:
         The document.
     """
-    script = _asset("report.js")
+    script = _script()
     return (
         _environment()
         .get_template(template)
@@ -49,14 +64,14 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
             style=Markup(_asset("report.css")),
             plotly=Markup(get_plotlyjs()),
             script=Markup(script),
-            scripts=" ".join([*(_hash(text) for text in (get_plotlyjs(), script)), *_more_scripts(payload)]),
+            scripts=" ".join(_hash(text) for text in (get_plotlyjs(), script)),
             payload=_embedded({"config": CONFIG, "colours": COLOURS, **payload}),
         )
     )
 
 
 def drawn(name: str, figure: Any, **more: Any) -> dict[str, Any]:
-    """Word a figure for report.js; `name` is the id of its element."""
+    """Word a figure for the page's script; `name` is the id of its element."""
     traces = [trace.to_plotly_json() for trace in figure.data]
     return {"id": name, "data": traces, "layout": figure.layout.to_plotly_json(), **more}
 
@@ -83,10 +98,11 @@ def _embedded(payload: Mapping[str, Any]) -> Markup:
     return Markup(text.translate(_ESCAPES))
 
 
-def _more_scripts(payload: Mapping[str, Any]) -> list[str]:
-    """What else the policy must allow: regl, which draws parallel coordinates, compiles its calls by `Function()`."""
-    types = {trace.get("type") for figure in payload["figures"] for trace in figure["data"]}
-    return ["'unsafe-eval'"] if "parcoords" in types else []
+@cache
+def _script() -> str:
+    """Join the parts in a function, so that nothing of them is global."""
+    parts = "\n".join(_asset(name) for name in SCRIPTS)
+    return f'"use strict";\n(function () {{\n{parts}\n}})();'
 
 
 def _hash(script: str) -> str:

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
-from divideropt.report.data import ObjectiveFacts, ReportData, VariableFacts
+from divideropt.report.data import ObjectiveFacts, ReportData
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
 from divideropt.report.palette import DASHES, Mark, marks
@@ -20,6 +20,9 @@ MOST_PROJECTIONS = 6
 
 SELECTION = "selected"
 """Name of the trace that rings the selected design; the page fills it."""
+
+CHOSEN = "chosen"
+"""Name of the trace of the selected designs in three dimensions, where a trace has one opacity; the page fills it."""
 
 SMALLEST = 1e-12
 """Residuals are drawn no lower, where the axis would have no place for zero."""
@@ -42,6 +45,16 @@ def front_3d(data: ReportData) -> go.Figure:
             customdata=_ids(designs),
             hovertemplate=hover(dict(zip("xyz", first, strict=True))),
         )
+    figure.add_scatter3d(
+        x=[],
+        y=[],
+        z=[],
+        name=CHOSEN,
+        mode="markers",
+        marker={"size": 5},
+        customdata=[],
+        hovertemplate=hover(dict(zip("xyz", first, strict=True))),
+    )
     figure.add_scatter3d(**ring(12), x=[], y=[], z=[])
     axes = {f"{k}axis": {"title": {"text": label(o)}} for k, o in zip("xyz", first, strict=True)}
     figure.update_layout(
@@ -58,42 +71,6 @@ def projections(data: ReportData) -> list[tuple[tuple[int, int], go.Figure]]:
     """Draw the front on pairs of objectives: the pair, and its figure."""
     pairs = list(combinations(range(len(data.objectives)), 2))[:MOST_PROJECTIONS]
     return [(pair, _projection(data, data.objectives[pair[0]], data.objectives[pair[1]])) for pair in pairs]
-
-
-def parallel_coordinates(data: ReportData) -> go.Figure:
-    """Draw variables over their bounds and objectives as parallel axes, a line a design of the front."""
-    designs = [data.front[i] for i in data.drawn]
-    dimensions = [
-        {
-            "label": label(facts, line_break=True),
-            "values": np.array([rounded(facts.axis.scaled(d.variables[i])) for d in designs]),
-            "range": [facts.axis.scaled(facts.lower), facts.axis.scaled(facts.upper)],
-        }
-        for i, facts in enumerate(data.variables)
-    ]
-    dimensions += [
-        {
-            "label": label(facts, line_break=True),
-            "values": np.array([rounded(facts.axis.scaled(d.objectives[i])) for d in designs]),
-        }
-        for i, facts in enumerate(data.objectives)
-    ]
-    order = list(data.strategies)
-    figure = go.Figure(layout=layout(height=440, margin={"l": 60, "r": 60, "t": 64, "b": 24}))
-    figure.add_parcoords(
-        dimensions=dimensions,
-        line={
-            "color": np.array([order.index(d.strategy) for d in designs]),
-            "colorscale": _steps([mark.colour for mark in marks(order).values()]),
-            "cmin": 0,
-            "cmax": max(1, len(order) - 1),
-        },
-        labelfont={"size": 12},
-        tickfont={"size": 11},
-        rangefont={"size": 11, "color": "rgba(0,0,0,0)"},  # it would stand on the headings; the ticks say as much
-        unselected={"line": {"opacity": 0.06}},
-    )
-    return figure
 
 
 def hypervolume(data: ReportData) -> go.Figure:
@@ -133,11 +110,9 @@ def residuals(data: ReportData) -> go.Figure:
     return figure
 
 
-def label(facts: ObjectiveFacts | VariableFacts, *, line_break: bool = False) -> str:
+def label(facts: ObjectiveFacts) -> str:
     """Label an axis, escaped: plotly reads tags, and links among them, in any text."""
-    axis = facts.axis
-    parts = [plain(axis.words), plain(" ".join(p for p in (axis.symbol, axis.bracket) if p))]
-    return ("<br>" if line_break else " ").join(part for part in parts if part)
+    return plain(facts.axis.label)
 
 
 def plain(text: str) -> str:
@@ -251,10 +226,3 @@ def ring(size: float) -> dict[str, Any]:
         "marker": {"symbol": "circle-open", "size": size, "line": {"width": 2.5}},
         "hoverinfo": "skip",
     }
-
-
-def _steps(colours: Sequence[str]) -> list[list[Any]]:
-    """Make a colour scale of plain steps, a colour each strategy."""
-    if len(colours) == 1:
-        return [[0.0, colours[0]], [1.0, colours[0]]]
-    return [[i / (len(colours) - 1), colour] for i, colour in enumerate(colours)]

@@ -1,5 +1,6 @@
 """The report's page: frozen data to one HTML file."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,17 +11,15 @@ from divideropt.report.cost_figure import FRONTS, cost_figures, kind_of
 from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
-from divideropt.report.display import number, rounded
+from divideropt.report.display import Axis, number, rounded
 from divideropt.report.document import drawn, render, save
 from divideropt.report.figures import (
     front_3d,
     hypervolume,
     least_objective,
-    parallel_coordinates,
     projections,
     residuals,
 )
-from divideropt.report.front import Design
 from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
@@ -120,7 +119,6 @@ def _front_figures(data: ReportData) -> list[dict[str, Any]]:
     for pair, figure in projections(data):
         names = " and ".join(data.objectives[i].axis.words for i in pair)
         found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
-    found.append(drawn("parallel", parallel_coordinates(data), webgl=True))
     return found
 
 
@@ -134,20 +132,19 @@ def _cost_marks(data: ReportData) -> list[tuple[Mark, str, int]]:
 
 
 def _selection(data: ReportData) -> dict[str, Any]:
-    """What the page needs to show a design that is selected."""
+    """What the page needs to select designs and to show them."""
+    if not data.front:
+        return {"selected": None}
     responses = data.responses
-    shown = [data.front[i] for i in data.drawn] + list(data.best)
-    shown += [candidate.design for candidate in data.choosing.candidates] if data.choosing else []
     return {
-        "fields": [_field(facts.axis.label, None) for facts in data.variables]
-        + [
-            _field(facts.axis.label, None if facts.goal is None else facts.axis.bound(facts.goal))
-            for facts in data.objectives
-        ],
+        "fields": [_field(facts.axis, lower=facts.lower, upper=facts.upper) for facts in data.variables]
+        + [_field(facts.axis, goal=facts.goal) for facts in data.objectives],
         "objectives": len(data.objectives),
-        "designs": {design.design_id: _values(design, data) for design in shown} if data.front else {},
+        "designs": _designs(data),
         "responses": {} if responses is None else _curves(responses),
         "selected": _first(data),
+        "name": data.name,
+        "simulates": responses is not None,
     }
 
 
@@ -155,17 +152,43 @@ def _curves(responses: Responses) -> dict[str, Any]:
     return {r.name: {"t": r.times, "q": r.flows, "window": step_window(r, responses.sets)} for r in responses.designs}
 
 
-def _field(label: str, goal: str | None) -> dict[str, Any]:
-    return {"label": label, "goal": goal}
-
-
-def _values(design: Design, data: ReportData) -> dict[str, Any]:
-    axes = [facts.axis for facts in data.variables] + [facts.axis for facts in data.objectives]
-    values = (*design.variables, *design.objectives)
+def _field(
+    axis: Axis, lower: float | None = None, upper: float | None = None, goal: float | None = None
+) -> dict[str, Any]:
+    """Word a column: bounds and goal in the platform's unit; `scale` makes the unit shown of it."""
     return {
-        "v": [rounded(axis.scaled(value)) for axis, value in zip(axes, values, strict=True)],
-        "met": design.met,
-        "attainment": None if design.attainment is None else rounded(design.attainment),
+        "name": axis.name,
+        "words": axis.words,
+        "detail": axis.detail,
+        "label": axis.label,
+        "unit": axis.unit,
+        "magnitude": axis.magnitude,
+        "shown": axis.shown.unit,
+        "scale": axis.shown.scale,
+        "lower": lower,
+        "upper": upper,
+        "goal": goal,
+        "goal_words": None if goal is None else axis.bound(goal),
+    }
+
+
+def _designs(data: ReportData) -> dict[str, Any]:
+    """Every design that the page can show, a list a column: first those drawn, the best of them first."""
+    more = [*data.best, *(candidate.design for candidate in (data.choosing.candidates if data.choosing else ()))]
+    listed = data.front[:MOST_ROWS]
+    known = {design.design_id: design for design in (*(data.front[i] for i in data.drawn), *listed, *more)}
+    places = {name: place for place, name in enumerate(data.strategies)}
+    rows = [(*design.variables, *design.objectives) for design in known.values()]
+    return {
+        "ids": list(known),
+        "drawn": len(data.drawn),
+        "strategy": [places.get(design.strategy, 0) for design in known.values()],
+        "values": [
+            [value if math.isfinite(value) else None for value in column] for column in zip(*rows, strict=True)
+        ],
+        "attainment": None
+        if data.front[0].attainment is None
+        else [None if d.attainment is None else rounded(d.attainment) for d in known.values()],
     }
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-"""In figures; report.js exchanges each for the page's `--series-N`, which is lighter on a dark page."""
+"""In figures; the page exchanges each for the page's `--series-N`, which is lighter on a dark page."""
 
 _SHAPES = ("circle", "diamond", "square", "cross", "x", "circle-open")  # those that plotly has in 3-D, too
 
@@ -48,7 +48,10 @@ def marks(strategies: Sequence[str]) -> dict[str, Mark]:
 
 
 SELECTED_STROKE = Stroke(COLOURS[1], "solid", 3.0)
-"""The selected design's."""
+"""That of the design that is shown closely."""
+
+OTHERS_STROKE = Stroke(COLOURS[1], "solid", 1.0)
+"""Those of the others selected."""
 
 SET_STROKES: Mapping[str, Stroke] = MappingProxyType(
     {

@@ -1,0 +1,167 @@
+// Plotly's figures: drawn, recoloured with the page's theme, and marked with the selection.
+
+const shown = new Map(); // element's id → figure that is drawn there
+const NARROW = 600; // [px]
+const DIMMED = 0.12; // opacity of what is not selected
+
+let themed = null; // kept until the theme changes: to ask for it makes the browser style the whole page
+
+function theme() {
+  if (themed) return themed;
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name) => style.getPropertyValue("--" + name).trim();
+  themed = { ink: colour("ink"), quiet: colour("quiet"), grid: colour("grid"), line: colour("line"), paper: colour("paper"), series: report.colours.map((_, i) => colour("series-" + i)) };
+  return themed;
+}
+
+function exchanged(style, t) {
+  if (!style) return style;
+  let text = JSON.stringify(style);
+  report.colours.forEach((hex, i) => { text = text.replaceAll(hex, t.series[i]); });
+  return JSON.parse(text);
+}
+
+function coloured(figure) {
+  const t = theme();
+  const layout = structuredClone(figure.layout);
+  const axis = { color: t.ink, gridcolor: t.grid, zerolinecolor: t.line, linecolor: t.line, tickcolor: t.line };
+  layout.font = { ...layout.font, color: t.ink };
+  layout.hoverlabel = { bgcolor: t.paper, bordercolor: t.line, font: { color: t.ink } };
+  layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: t.quiet, activecolor: t.ink };
+  for (const key of Object.keys(layout)) {
+    if (/^[xy]axis/.test(key)) layout[key] = { showgrid: true, zeroline: false, showline: true, ticks: "outside", ticklen: 4, ...axis, ...layout[key] };
+  }
+  if (layout.scene) {
+    if (byId(figure.id).clientWidth < NARROW) {
+      for (const key of ["x", "y", "z"]) layout.scene.camera.eye[key] *= 1.5; // step back: the labels fit
+    }
+    for (const key of ["xaxis", "yaxis", "zaxis"]) {
+      layout.scene[key] = { ...layout.scene[key], ...axis, gridcolor: t.line, showbackground: false, zeroline: false };
+    }
+  }
+  for (const shape of layout.shapes || []) shape.line.color = t.quiet;
+  const data = figure.data.map((trace) => {
+    const copy = { ...trace };
+    for (const key of ["line", "marker"]) if (trace[key]) copy[key] = exchanged(trace[key], t);
+    if (isRing(trace)) copy.marker = { ...copy.marker, color: t.ink, line: { ...copy.marker.line, color: t.ink } };
+    return copy;
+  });
+  return { data, layout };
+}
+
+const isRing = (trace) => trace.name === "selected" && trace.mode === "markers";
+
+// --- drawing ---
+
+function webgl() {
+  try {
+    const context = document.createElement("canvas").getContext("webgl");
+    if (!context) return false;
+    const loser = context.getExtension("WEBGL_lose_context");
+    if (loser) loser.loseContext();
+    return true;
+  } catch (error) {
+    return false;
+  }
+}
+
+function leaveOut(element) {
+  Plotly.purge(element);
+  element.hidden = true;
+  const sentence = element.closest("figure").querySelector(".missing");
+  if (sentence) sentence.hidden = false;
+}
+
+function configOf(figure) {
+  if (!isProjection(figure)) return report.config;
+  const removed = report.config.modeBarButtonsToRemove.filter((name) => !/^(select|lasso)2d$/.test(name));
+  return { ...report.config, modeBarButtonsToRemove: removed };
+}
+
+const isProjection = (figure) => figure.axes && figure.axes.length === 2;
+
+async function draw(figure) {
+  const element = byId(figure.id);
+  if (!element) return;
+  if (isProjection(figure)) figure.layout.dragmode = "select";
+  const { data, layout } = coloured(figure);
+  await Plotly.newPlot(element, data, layout, configOf(figure));
+  if (element.querySelector(".no-webgl, a[href]")) return leaveOut(element); // plotly's own words, with a link
+  shown.set(figure.id, figure);
+  if (!figure.axes) return;
+  const later = (action) => setTimeout(action, 0); // plotly has not done yet when it tells
+  element.on("plotly_click", (event) => later(() => pick(event.points[0].customdata, figure.id, event.event)));
+  let dragged = false; // plotly tells of a selection also when it draws again
+  element.on("plotly_selecting", () => { dragged = true; });
+  element.on("plotly_selected", (event) => {
+    if (event && dragged) later(() => choose(event.points.map((point) => point.customdata), figure.id));
+    dragged = false;
+  });
+  element.on("plotly_deselect", () => later(clearSelection));
+}
+
+/** WebGL takes seconds where a processor computes it, so it is drawn, and drawn again, only where it is looked at. */
+function drawWhenSeen(figure, able) {
+  const element = byId(figure.id);
+  if (!able) return leaveOut(element);
+  figure.away = true;
+  new IntersectionObserver((entries) => {
+    figure.away = !entries[entries.length - 1].isIntersecting;
+    if (!figure.away) see(figure);
+  }, { rootMargin: "200px" }).observe(element);
+  return undefined;
+}
+
+async function see(figure) {
+  const element = byId(figure.id);
+  if (figure.begun) return figure.stale ? redraw(figure) : undefined;
+  figure.begun = true;
+  markFigure(figure);
+  await draw(figure);
+  element.dataset.drawn = "yes";
+  return figure.stale ? redraw(figure) : undefined; // another selection was made meanwhile
+}
+
+function redraw(figure) {
+  figure.stale = Boolean(figure.away || (figure.begun && !shown.has(figure.id)));
+  if (figure.stale || !shown.has(figure.id)) return undefined;
+  const element = byId(figure.id);
+  const { data, layout } = coloured(figure);
+  if (isProjection(figure)) {
+    layout.selections = selection.by === figure.id ? element.layout.selections : []; // outlines of boxes
+    layout.selectionrevision = selection.by === figure.id ? figure.id : String(Math.random());
+  }
+  return Plotly.react(element, data, layout, configOf(figure));
+}
+
+// --- the selection in the figures of the front ---
+
+function markFigure(figure) {
+  const isChosen = (id) => selection.ids.has(id);
+  for (const trace of figure.data) {
+    if (!trace.customdata || trace.name === "chosen") continue;
+    if (isProjection(figure)) {
+      trace.unselected = { marker: { opacity: DIMMED } };
+      trace.selectedpoints = selection.active ? [...trace.customdata.keys()].filter((i) => isChosen(trace.customdata[i])) : null;
+    } else {
+      trace.opacity = selection.active ? DIMMED : 1;
+    }
+  }
+  const over = figure.data.find((trace) => trace.name === "chosen"); // WebGL has one opacity a trace
+  if (over) fill(over, figure.data.filter((trace) => trace.customdata && trace !== over), isChosen);
+  const ring = figure.data.find(isRing);
+  figure.axes.forEach((objective, i) => {
+    ring["xyz"[i]] = selection.lead === null ? [] : [columns[firstObjective + objective][rowOf.get(selection.lead)]];
+  });
+}
+
+function fill(over, traces, isChosen) {
+  const places = traces.flatMap((trace) => [...trace.customdata.keys()].filter((i) => isChosen(trace.customdata[i])).map((i) => [trace, i]));
+  for (const key of ["x", "y", "z", "customdata"]) over[key] = places.map(([trace, i]) => trace[key][i]);
+  for (const key of ["color", "symbol"]) over.marker[key] = places.map(([trace]) => trace.marker[key]);
+}
+
+function followInFigures() {
+  const fronts = report.figures.filter((figure) => figure.axes);
+  follow(() => Promise.all(fronts.map((figure) => { markFigure(figure); return redraw(figure); })));
+}

@@ -1,0 +1,26 @@
+// What every part of the page's script begins with: the data, elements by id, and how a number is written.
+
+const report = JSON.parse(document.getElementById("report-data").textContent);
+const byId = (id) => document.getElementById(id);
+const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;"); // plotly reads tags
+
+function raised(value) {
+  const [mantissa, exponent] = value.toExponential(3).split("e");
+  return mantissa + "·10" + exponent.replace("+", "").replace("-", "⁻").replace(/[0-9]/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
+}
+
+function number(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  const text = size === 0 ? "0" : size < 1e-4 || size >= 1e6 ? raised(value) : value.toPrecision(4);
+  return text.replace("-", "−");
+}
+
+const counted = (count, word) => count + " " + word + (count === 1 ? "" : "s");
+
+function make(name, text, attributes) {
+  const element = document.createElement(name);
+  if (text !== undefined) element.textContent = text;
+  for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
+  return element;
+}

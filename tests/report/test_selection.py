@@ -1,0 +1,409 @@
+"""One selection that every view of the report follows: however it is made, in the address, and saved to files."""
+
+import io
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, expect
+from ruamel.yaml import YAML
+
+from browsing import NO_WEBGL, PATIENCE, Opened, quiet
+from divideropt.campaign.designs import evaluate_designs, read_designs
+from divideropt.campaign.load import parse_campaign, stored_campaign
+from divideropt.campaign.plan import build_model
+from divideropt.campaign.simulate import chosen_design
+from divideropt.models.divider import PARAMETERS
+from divideropt.models.divider.scenarios import BASE
+from divideropt.report.data import MOST_DRAWN, ReportData
+from divideropt.report.data import _drawn as drawn
+from divideropt.report.page import render_report
+from divideropt.store import Store
+
+CAMPAIGN = """
+name: pasted
+model: {kind: divider, set: SET}
+variables: {radial_clearance: [2 um, 4 um]}
+objectives: {source_pressure: {goal: 18 MPa}}
+strategies: {nsga2: {population: 8, generations: 2, seeds: [1]}}
+"""
+
+COUNTS = """() => ({
+    lines: Number(document.querySelector("#parallel").dataset.selected || 0),
+    projections: ["0-1", "0-2", "1-2"].map((pair) => [...document.querySelectorAll(
+        `#projection-${pair} .trace:not(:last-child) path.point`)].filter((p) => p.style.opacity > 0.5).length),
+    solid: document.getElementById("front").data?.find((trace) => trace.name === "chosen").x.length ?? null,
+    rows: document.querySelectorAll("#front-table tr[aria-selected=true]").length,
+    compared: document.querySelectorAll("#compared tbody tr").length,
+    address: location.hash.replace(/&.*/, "").split(",").flatMap((run) => run.split(".")).length,
+})"""
+"""How many designs each view tells from the others."""
+
+INK = """([from, to]) => {
+    const canvas = document.querySelector("#parallel canvas.all");
+    const [left, width] = [from, to - from].map((x) => Math.round(x * canvas.width / canvas.clientWidth));
+    const { data } = canvas.getContext("2d").getImageData(left, 0, width, canvas.height);
+    return data.filter((_, i) => i % 4 === 3 && data[i] > 0).length;
+}"""
+"""How many pixels between two places [px] have a line on them."""
+
+
+@pytest.fixture(scope="module")
+def page_text(data: ReportData) -> str:
+    return render_report(data)
+
+
+@pytest.fixture(scope="module")
+def report(opened: Callable[..., Opened], page_text: str) -> Opened:
+    """A report in a browser without WebGL, which is far quicker; its tests begin with nothing selected."""
+    return opened(page_text, NO_WEBGL)
+
+
+@pytest.fixture(autouse=True)
+def nothing_selected(report: Opened) -> None:
+    report.page.keyboard.press("Escape")
+    expect(report.page.locator("#let-go")).to_be_hidden()
+
+
+def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) -> None:
+    mouse = found.page.mouse
+    mouse.move(*begin)
+    mouse.down()
+    mouse.move((begin[0] + end[0]) / 2, (begin[1] + end[1]) / 2)
+    mouse.move(*end)
+    mouse.up()
+
+
+def into_view(found: Opened, selector: str) -> None:
+    found.page.locator(selector).evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
+
+
+def brush(found: Opened, axis: int, begin: float, end: float) -> None:
+    """Drag along an axis, between shares of it from above."""
+    into_view(found, "#parallel")
+    box = found.page.locator("#parallel .axis .spine").nth(axis).bounding_box()
+    drag(found, *((box["x"], box["y"] + share * box["height"]) for share in (begin, end)))
+
+
+def told(found: Opened, count: int) -> None:
+    """Wait until so many are announced."""
+    expect(found.page.locator("#announced")).to_contain_text(re.compile(rf"^{count or 'No'} design"))
+    found.page.wait_for_timeout(200)
+
+
+def followed(found: Opened, count: int) -> None:
+    """Every view tells so many designs from the others."""
+    told(found, count)
+    seen = found.page.evaluate(COUNTS)
+    compared = min(count, 12) if count > 1 else seen["compared"]
+    assert seen == {
+        "lines": count,
+        "projections": [count] * 3,
+        "solid": seen["solid"] if seen["solid"] is None else count,
+        "rows": count,
+        "compared": compared,
+        "address": count,
+    }
+
+
+def upper_half(data: ReportData, axis: int) -> int:
+    facts = data.variables[axis]
+    middle = (facts.lower + facts.upper) / 2
+    return sum(design.variables[axis] > middle for design in data.front)
+
+
+def test_a_brush_is_followed_by_every_view(report, data):
+    brush(report, 0, 0.5, -0.05)
+    count = upper_half(data, 0)
+    assert 1 < count < len(data.front)
+    followed(report, count)
+    assert len([line for line in report.lines() if line]) == 2 * 3 + 2 * count, "the sets, and each that is selected"
+    assert f"and {count - 1} other" in report.title()
+    quiet(report)
+
+
+def test_two_brushes_select_what_goes_through_both(report, data):
+    brush(report, 0, 0.5, -0.05)
+    brush(report, 2, 0.5, 1.05)
+    middles = [(v.lower + v.upper) / 2 for v in data.variables]
+    count = sum(d.variables[0] > middles[0] and d.variables[2] < middles[2] for d in data.front)
+    followed(report, count) if count else told(report, 0)
+    box = report.page.locator("#parallel .axis .spine").nth(2).bounding_box()
+    report.page.mouse.click(box["x"], box["y"] + 0.1 * box["height"])
+    followed(report, upper_half(data, 0))
+
+
+def test_keys_brush_an_axis(report, data):
+    report.page.get_by_role("slider", name="spool radius, lower end of the brush").focus()
+    for _ in range(5):
+        report.page.keyboard.press("PageUp")
+    followed(report, upper_half(data, 0))
+    end = report.page.get_by_role("slider", name="spool radius, lower end of the brush")
+    assert end.get_attribute("aria-valuetext") == "11.00 mm"
+    report.page.keyboard.press("Delete")
+    expect(report.page.locator("#announced")).to_have_text("Nothing selected")
+    assert report.page.evaluate(COUNTS)["projections"] == [len(data.front)] * 3
+
+
+def test_no_line_through_a_brush_is_no_design(report):
+    report.page.get_by_role("slider", name="spool radius, lower end of the brush").press("End")
+    told(report, 0)
+    assert report.title() == "No design selected"
+    assert report.page.locator("[data-save=csv]").is_disabled()
+    report.page.keyboard.press("Escape")
+    expect(report.page.locator("#announced")).to_have_text("Nothing selected")
+
+
+def test_a_box_in_a_projection_selects_what_is_in_it(report, data):
+    place = report.page.locator("#projection-0-1 .nsewdrag").first
+    into_view(report, "#projection-0-1")
+    box = place.bounding_box()
+    right = box["x"] + 0.4 * box["width"]
+    inside = report.page.eval_on_selector_all(
+        "#projection-0-1 .trace:not(:last-child) path.point",
+        "ps => ps.map(p => p.getBoundingClientRect()).map(b => b.x + b.width / 2)",
+    )
+    count = sum(x < right for x in inside)
+    assert 1 < count < len(data.front)
+    drag(report, (box["x"] + 1, box["y"] + 1), (right, box["y"] + box["height"] - 1))
+    followed(report, count)
+    brush(report, 0, 0.5, -0.05)
+    followed(report, upper_half(data, 0))
+    assert report.count("#projection-0-1 .selectionlayer path") == 0, "its outline is gone"
+
+
+def test_a_row_selects_and_another_joins(report, data):
+    rows = report.page.locator("#front-table tbody tr")
+    rows.nth(2).click()
+    followed(report, 1)
+    rows.nth(4).click(modifiers=["Control"])
+    followed(report, 2)
+    assert report.page.locator("#compared tbody tr").nth(1).get_attribute("data-id") == data.front[4].design_id
+    rows.nth(2).click(modifiers=["Control"])
+    followed(report, 1)
+    assert data.front[4].design_id in report.title()
+
+
+def test_a_line_can_be_clicked(report, data):
+    into_view(report, "#parallel")
+    first, second = (report.page.locator("#parallel .axis .spine").nth(k).bounding_box() for k in (0, 1))
+    design = data.front[0]
+    shares = [(v.upper - x) / (v.upper - v.lower) for v, x in zip(data.variables, design.variables, strict=True)]
+    height = sum(b["y"] + s * b["height"] for b, s in zip((first, second), shares, strict=False)) / 2
+    report.page.mouse.click((first["x"] + second["x"]) / 2, height)
+    followed(report, 1)
+
+
+def test_keys_alone_select_a_design_and_its_response(report, data):
+    held = {response.name for response in data.responses.designs}
+    place = next(i for i in range(3, len(data.front)) if data.front[i].design_id in held)
+    before = report.lines()
+    report.page.locator("[data-save=csv]").evaluate(
+        "() => document.querySelector('#front-table tr[tabindex=\"0\"]').focus()"
+    )
+    report.page.keyboard.press("Home")
+    for _ in range(place):
+        report.page.keyboard.press("ArrowDown")
+    report.page.keyboard.press(" ")
+    followed(report, 1)
+    assert data.front[place].design_id in report.title()
+    assert report.lines() != before
+
+
+def test_every_table_of_designs_is_reached_by_tab(report):
+    for table in ("best", "choosing-table", "front-table"):
+        assert report.count(f"#{table} tr[tabindex='0']") == 1
+
+
+def test_a_headings_drag_moves_its_axis(report, data):
+    words = "ns => ns.map(n => n.querySelector('title').textContent)"
+    names = [facts.axis.label for facts in (*data.variables, *data.objectives)]
+    assert report.page.eval_on_selector_all("#parallel .heading", words) == names
+    into_view(report, "#parallel")
+    heading = report.page.locator("#parallel .heading").first.bounding_box()
+    third = report.page.locator("#parallel .axis .spine").nth(2).bounding_box()
+    begin = heading["x"] + heading["width"] / 2, heading["y"] + 5
+    drag(report, begin, (third["x"], begin[1]))
+    moved = [*names[1:3], names[0], *names[3:]]
+    assert report.page.eval_on_selector_all("#parallel .heading", words) == moved
+    report.page.get_by_role("slider", name="spool radius, lower end of the brush").focus()
+    for _ in range(2):
+        report.page.keyboard.press("Control+ArrowLeft")
+    assert report.page.eval_on_selector_all("#parallel .heading", words) == names
+
+
+def test_the_address_restores_a_selection(report, data):
+    wanted = [data.front[i].design_id for i in (1, 5, 6)]
+    report.page.evaluate("text => { location.hash = text; }", f"#select={','.join(wanted)}&show={wanted[2]}")
+    followed(report, 3)
+    assert wanted[2] in report.title()
+    written = report.page.evaluate("location.hash")
+    report.page.evaluate("document.querySelector('nav a').click()")
+    expect(report.page).to_have_url(re.compile(re.escape(written)))
+    report.page.reload()
+    report.page.wait_for_selector("html[data-drawn]")
+    followed(report, 3)
+    assert wanted[2] in report.title()
+    report.page.keyboard.press("Escape")
+    assert report.page.evaluate("location.hash") == ""
+    quiet(report)
+
+
+def test_designs_that_the_page_has_not_are_said(report, data):
+    report.page.evaluate("text => { location.hash = text; }", f"#select={data.front[1].design_id},nsga2-9/1.2")
+    expect(report.page.locator("#announced")).to_contain_text("2 of the 3 designs that the address names are not in")
+    assert report.page.evaluate(COUNTS)["rows"] == 1
+
+
+HOSTILE_FRAGMENTS = (
+    "#select=",
+    "#select=__proto__/constructor",
+    "#select=<img src=x onerror=window.hacked=1>",
+    "#select=nsga2-1/1&show=<script>window.hacked=1</script>",
+    "#select=nsga2-1/1/2",
+    "#select=nsga2-1",
+    "#select=nsga2-1/1&show=nsga2-1/1&show=x",
+    "#select=nsga2-1/%00",
+    "#select=" + "nsga2-1/1," * 40_000,
+    "#javascript:window.hacked=1",
+)
+
+
+@pytest.mark.parametrize("fragment", HOSTILE_FRAGMENTS, ids=lambda text: text[:30])
+def test_a_hostile_address_is_ignored(report, data, fragment):
+    report.page.locator("#front-table tbody tr").nth(1).click()
+    followed(report, 1)
+    report.page.evaluate("text => { location.hash = text; }", fragment)
+    report.page.wait_for_timeout(100)
+    followed(report, 1)
+    assert data.front[1].design_id in report.title()
+    assert report.page.evaluate("window.hacked ?? null") is None
+    quiet(report)
+
+
+def saved(found: Opened, kind: str, folder: Path) -> Path:
+    with found.page.expect_download() as waiting:
+        found.page.locator(f"[data-save={kind}]").click()
+    path = folder / waiting.value.suggested_filename
+    waiting.value.save_as(path)
+    return path
+
+
+def test_the_selection_is_saved_as_tables(report, data, store: Store, tmp_path):
+    report.page.evaluate("text => { location.hash = text; }", "#select=" + ",".join(_some(data)))
+    told(report, 3)
+    path = saved(report, "designs", tmp_path)
+    assert path.name == "small-selection-designs.csv"
+    designs = read_designs(path, list(PARAMETERS.values()))
+    chosen = [design for design in data.front if design.design_id in _some(data)]
+    assert designs.identities == tuple(design.design_id for design in chosen)
+    assert [tuple(row) for row in designs.values] == [design.variables for design in chosen], "to the last bit"
+    campaign = stored_campaign(store)
+    again = evaluate_designs(designs, build_model(campaign), campaign.model.base_parameters())
+    assert again["source_pressure"].tolist() == [design.objectives[2] for design in chosen]
+    whole = saved(report, "csv", tmp_path).read_text().splitlines()
+    assert whole[0].split(",")[-3:] == ["steady_state_error", "|dynamic_error|", "source_pressure"]
+    assert [tuple(map(float, line.split(",")[-3:])) for line in whole[1:]] == [d.objectives for d in chosen]
+    quiet(report)
+
+
+def test_the_selection_is_saved_as_blocks_for_a_campaign(report, data, store: Store, tmp_path):
+    report.page.evaluate("text => { location.hash = text; }", "#select=" + ",".join(_some(data)))
+    told(report, 3)
+    text = saved(report, "yaml", tmp_path).read_text()
+    chosen = [design for design in data.front if design.design_id in _some(data)]
+    documents: list[Any] = list(YAML(typ="safe", pure=True).load_all(io.StringIO(text)))
+    campaign = stored_campaign(store)
+    commands = [line for line in text.splitlines() if line.startswith("# divideropt simulate")]
+    for design, block, command in zip(chosen, documents, commands, strict=True):
+        values = dict(zip((facts.axis.name for facts in data.variables), design.variables, strict=True))
+        pasted = parse_campaign(CAMPAIGN.replace("SET", json.dumps(block["set"])))
+        assert pasted.model.set == values, "to the last bit"
+        settings = [f"{name}={value}" for name, value in re.findall(r"--set (\w+)='([^']*)'", command)]
+        simulated = chosen_design(campaign, settings, BASE)[1]
+        assert {name: simulated[name] for name in values} == values
+    quiet(report)
+
+
+def test_hostile_names_stay_in_their_cells_and_comments(opened, data, tmp_path):
+    hostile = 'x\n=1+1,"\u2028</script>'
+    front = data.variables[0]
+    changed = replace(
+        data, name=hostile, variables=(replace(front, axis=replace(front.axis, name=hostile)), *data.variables[1:])
+    )
+    found = opened(render_report(changed), NO_WEBGL)
+    found.page.locator("#front-table tbody tr").first.click()
+    told(found, 1)
+    path = saved(found, "yaml", tmp_path)
+    assert path.name == "x-1-1-script--selection.yaml"
+    (block,) = YAML(typ="safe", pure=True).load_all(io.StringIO(path.read_text()))
+    assert list(block) == ["set"]
+    assert next(iter(block["set"])) == hostile
+    lines = list(saved(found, "designs", tmp_path).read_text().splitlines(keepends=False))
+    assert lines[0].startswith('design_id,"x')
+    quiet(found)
+
+
+def test_a_missing_value_is_a_gap_in_its_line(opened, data):
+    variables = (data.front[0].variables[0], float("nan"), *data.front[0].variables[2:])
+    one = replace(data, front=(replace(data.front[0], variables=variables),), drawn=(0,), best=(), choosing=None)
+    found = opened(render_report(one), NO_WEBGL)
+    places = [box["x"] for box in (found.page.locator("#parallel .spine").nth(k).bounding_box() for k in range(5))]
+    left = found.page.locator("#parallel").bounding_box()["x"]
+    first, _, third, fourth, _ = (place - left for place in places)
+    assert found.page.evaluate(INK, [first + 5, third - 5]) == 0, "nothing on either side of the axis without a value"
+    assert found.page.evaluate(INK, [third + 5, fourth - 5]) > (fourth - third - 10) / 2
+    assert found.page.evaluate(INK, [first - 5, first + 5]) > 0, "a value between gaps is a dot"
+    slider = found.page.get_by_role("slider", name="groove width, lower end of the brush")
+    slider.press("PageUp")
+    told(found, 0)
+    quiet(found)
+
+
+def test_a_click_on_the_front_in_three_dimensions_selects(opened, data, page_text):
+    found = opened(page_text)
+    found.page.locator("#front").scroll_into_view_if_needed()
+    found.page.wait_for_selector("#front[data-drawn]")
+    chosen = data.front[3].design_id
+    found.page.evaluate(
+        "id => document.getElementById('front').emit('plotly_click', {points: [{customdata: id}]})", chosen
+    )
+    followed(found, 1)
+    assert chosen in found.title()
+    assert found.page.evaluate(
+        "document.getElementById('front').data.slice(0, -2).every(trace => trace.opacity < 0.5)"
+    )
+    assert "unsafe-eval" not in page_text.partition("<style>")[0]
+    quiet(found)
+
+
+def test_a_front_of_five_thousand_is_light_and_quick(browser: Browser, data: ReportData, tmp_path: Path):
+    """Issue 8, point 4: under 9 MB and 3 s, here of the page's own thread, in which no other's work counts."""
+    random = np.random.default_rng(1)
+    front = tuple(replace(data.front[i % len(data.front)], design_id=f"nsga2-1/{i + 100}") for i in range(5000))
+    shaken = random.normal(1.0, 0.02, (5000, 3))
+    front = tuple(
+        replace(design, objectives=tuple(float(q * s) for q, s in zip(design.objectives, row, strict=True)))
+        for design, row in zip(front, shaken, strict=True)
+    )
+    path = tmp_path / "large.html"
+    path.write_text(render_report(replace(data, front=front, drawn=drawn(front))), encoding="utf-8")
+    assert path.stat().st_size < 9e6
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    page.goto(path.as_uri(), timeout=PATIENCE)
+    page.wait_for_selector("html[data-drawn]", timeout=PATIENCE)
+    metrics = {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
+    print(f"{path.stat().st_size / 1e6:.2f} MB, {metrics['TaskDuration']:.2f} s")
+    assert page.locator("#projection-0-1 path.point").count() == MOST_DRAWN + 1
+    assert 0.1 < metrics["TaskDuration"] < 3.0
+
+
+def _some(data: ReportData) -> list[str]:
+    return [data.front[i].design_id for i in (1, 5, 6)]
