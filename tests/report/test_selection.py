@@ -172,6 +172,9 @@ def test_a_box_in_a_projection_selects_what_is_in_it(report, data):
     assert 1 < count < len(data.front)
     drag(report, (box["x"] + 1, box["y"] + 1), (right, box["y"] + box["height"] - 1))
     followed(report, count)
+    farther = box["x"] + 0.7 * box["width"]
+    drag(report, (right, box["y"] + box["height"] / 2), (farther, box["y"] + box["height"] / 2))
+    followed(report, sum(x < farther for x in inside))
     brush(report, 0, 0.5, -0.05)
     followed(report, upper_half(data, 0))
     assert report.count("#projection-0-1 .selectionlayer path") == 0, "its outline is gone"
@@ -346,6 +349,21 @@ def test_hostile_names_stay_in_their_cells_and_comments(opened, data, tmp_path):
     assert next(iter(block["set"])) == hostile
     lines = list(saved(found, "designs", tmp_path).read_text().splitlines(keepends=False))
     assert lines[0].startswith('design_id,"x')
+    quiet(found)
+
+
+def test_another_width_keeps_every_height_and_fits_the_paper(opened, page_text, data):
+    found = opened(page_text, NO_WEBGL)
+    heights = "() => [...document.querySelectorAll('.plot')].map(e => e.offsetHeight)"
+    before = found.page.evaluate(heights)
+    assert min(before[1:]) > 300
+    found.page.emulate_media(media="print")
+    found.page.set_viewport_size({"width": 703, "height": 1200})  # A4 within its margins
+    expect(found.page.locator("#bar")).to_be_hidden()
+    found.page.wait_for_timeout(500)
+    assert found.page.evaluate(heights) == before
+    assert found.page.locator("#parallel").bounding_box()["width"] == 703
+    assert found.page.locator("#parallel .axis .spine").last.bounding_box()["x"] < 703
     quiet(found)
 
 

@@ -68,8 +68,9 @@ function webgl() {
 function leaveOut(element) {
   Plotly.purge(element);
   element.hidden = true;
-  const sentence = element.closest("figure").querySelector(".missing");
-  if (sentence) sentence.hidden = false;
+  const { parentElement } = element;
+  for (const caption of parentElement.querySelectorAll(":scope > figcaption")) caption.hidden = true;
+  for (const sentence of parentElement.querySelectorAll(":scope > .missing")) sentence.hidden = false;
 }
 
 function configOf(figure) {
@@ -84,6 +85,7 @@ async function draw(figure) {
   const element = byId(figure.id);
   if (!element) return;
   if (isProjection(figure)) figure.layout.dragmode = "select";
+  element.style.height = figure.layout.height + "px"; // plotly forgets it when the window changes its size
   const { data, layout } = coloured(figure);
   await Plotly.newPlot(element, data, layout, configOf(figure));
   if (element.querySelector(".no-webgl, a[href]")) return leaveOut(element); // plotly's own words, with a link
@@ -91,11 +93,8 @@ async function draw(figure) {
   if (!figure.axes) return;
   const later = (action) => setTimeout(action, 0); // plotly has not done yet when it tells
   element.on("plotly_click", (event) => later(() => pick(event.points[0].customdata, figure.id, event.event)));
-  let dragged = false; // plotly tells of a selection also when it draws again
-  element.on("plotly_selecting", () => { dragged = true; });
-  element.on("plotly_selected", (event) => {
-    if (event && dragged) later(() => choose(event.points.map((point) => point.customdata), figure.id));
-    dragged = false;
+  element.on("plotly_selected", (event) => { // plotly tells of one also when it draws again
+    if (event && !figure.drawing) later(() => choose(event.points.map((point) => point.customdata), figure.id));
   });
   element.on("plotly_deselect", () => later(clearSelection));
 }
@@ -131,7 +130,8 @@ function redraw(figure) {
     layout.selections = selection.by === figure.id ? element.layout.selections : []; // outlines of boxes
     layout.selectionrevision = selection.by === figure.id ? figure.id : String(Math.random());
   }
-  return Plotly.react(element, data, layout, configOf(figure));
+  figure.drawing = true;
+  return Plotly.react(element, data, layout, configOf(figure)).finally(() => { figure.drawing = false; });
 }
 
 // --- the selection in the figures of the front ---

@@ -129,7 +129,7 @@ function layOut() {
   const room = (box.clientWidth - 2 * FRAME.side) / Math.max(1, order.length - 1);
   parallel.places = order.map((_, k) => FRAME.side + k * room);
   drawAll();
-  drawAxes(box.querySelector("svg"), Math.max(room, AXIS_ROOM));
+  drawAxes(box.querySelector("svg"), room);
   followInLines();
 }
 
