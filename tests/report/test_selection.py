@@ -20,7 +20,7 @@ from divideropt.campaign.plan import build_model
 from divideropt.campaign.simulate import chosen_design
 from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.scenarios import BASE
-from divideropt.report.data import MOST_DRAWN, ReportData
+from divideropt.report.data import MOST_DRAWN, ReportData, read_report
 from divideropt.report.data import _drawn as drawn
 from divideropt.report.page import render_report
 from divideropt.store import Store
@@ -397,6 +397,18 @@ def test_a_click_on_the_front_in_three_dimensions_selects(opened, data, page_tex
         "document.getElementById('front').data.slice(0, -2).every(trace => trace.opacity < 0.5)"
     )
     assert "unsafe-eval" not in page_text.partition("<style>")[0]
+    quiet(found)
+
+
+@pytest.mark.parametrize("objectives", [1, 4])
+def test_a_front_without_goals_or_responses_is_linked_too(opened, spheres, objectives):
+    data = read_report(spheres(objectives))
+    found = opened(render_report(data), NO_WEBGL)
+    assert found.count("#parallel .axis") == 3 + objectives
+    slider = found.page.get_by_role("slider", name="p0, lower end of the brush")
+    slider.press("PageUp")
+    told(found, sum(design.variables[0] >= 0.1 for design in data.front))
+    assert found.page.evaluate("location.hash").startswith("#select=nsga2-")
     quiet(found)
 
 

@@ -151,7 +151,7 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
     figure.add_scatter(**ring(13), x=[], y=[])
     figure.update_xaxes(title_text=label(first), rangemode="normal")
     figure.update_yaxes(title_text=label(second))
-    figure.update_layout(shapes=list(goal_lines(first, second)))
+    figure.update_layout(shapes=list(goal_lines(first, second)), dragmode="select")
     return figure
 
 

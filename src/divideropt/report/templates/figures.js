@@ -84,7 +84,6 @@ const isProjection = (figure) => figure.axes && figure.axes.length === 2;
 async function draw(figure) {
   const element = byId(figure.id);
   if (!element) return;
-  if (isProjection(figure)) figure.layout.dragmode = "select";
   element.style.height = figure.layout.height + "px"; // plotly forgets it when the window changes its size
   const { data, layout } = coloured(figure);
   await Plotly.newPlot(element, data, layout, configOf(figure));

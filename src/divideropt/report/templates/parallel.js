@@ -115,7 +115,7 @@ function pickLine(event) {
   const { left, top } = parallel.box.getBoundingClientRect();
   const adds = event.shiftKey || event.ctrlKey || event.metaKey;
   const all = [...Array(drawnDesigns).keys()];
-  const rows = selection.ids.size && !adds ? [...selection.ids].map((id) => rowOf.get(id)) : all;
+  const rows = selection.ids.size && !adds ? all.filter((row) => selection.ids.has(ids[row])) : all;
   const row = nearestRow(event.clientX - left, event.clientY - top, rows);
   if (row !== undefined) pick(ids[row], "parallel", event);
 }
