@@ -1,5 +1,7 @@
 """The rule of the house on made-up indices, and the author's numbers as the thesis prints them."""
 
+from dataclasses import replace
+
 import pandas as pd
 import pytest
 
@@ -104,6 +106,24 @@ def test_the_authors_numbers_are_those_of_table_3_1():
 def test_the_importance_of_his_numbers_leaves_cost_and_demands_out():
     house = house_of_quality(table(INDICES), valve(), thesis=True)
     assert house.author_importance == pytest.approx([21 / 28, 19 / 28, 28 / 28, 14 / 28, 15 / 28])
+
+
+def test_an_objective_that_the_author_did_not_have_counts_too():
+    problem = valve()
+    regulation = Objective(replace(QUANTITIES["load_regulation"], name="worst.load_regulation"), weight=3.0)
+    problem = replace(problem, objectives=(regulation, *problem.objectives[1:]))
+    indices = INDICES | {"worst.load_regulation": (0.0, 0.0, 0.0, 0.1, 0.9)}
+    house = house_of_quality(table(indices), problem, thesis=True)
+    assert [row.words for row in house.rows[:5]] == [row.words for row in THESIS_HOUSE]
+    (more,) = house.rows[5:]
+    assert (more.words, more.weight, more.scores) == ("worst.load regulation", 3.0, (0, 0, 0, 1, 4))
+    assert (more.author, more.author_weight) == (None, None)
+    assert house.rows[0].importance == ""  # his first criterion is none of the campaign's
+    losses = (0, 0, 2, 1, 4)
+    assert house.importance == pytest.approx(
+        [(3 * a + 3 * 4 + c) / (4 * 7) for a, c in zip(more.scores, losses, strict=True)]
+    )
+    assert house.author_importance == house_of_quality(table(INDICES), valve(), thesis=True).author_importance
 
 
 def test_the_sentence_follows_from_the_numbers():
