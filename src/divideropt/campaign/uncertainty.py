@@ -101,7 +101,9 @@ def uncertainty_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
             elif name == FAILED_SHARE.name:
                 yield mistake(where, f"{name} is of all samples together; delete it", at_key=True)
             elif is_kind(entry["statistic"]):
-                yield from _side_rules((*where[:2], "statistic"), entry)
+                yield from _side_rules(where, entry)
+                if section == "constraints":
+                    yield from _both_ways(where, entry, _mapping(raw, "objectives").get(name))
     uncertain = _mapping(_mapping(raw, "uncertainty"), "parameters")
     scenarios = _mapping(_mapping(raw, "model"), "scenarios")
     for scenario in scenarios:
@@ -153,6 +155,25 @@ def _side_rules(where: tuple[str, ...], entry: Mapping[str, Any]) -> Iterator[In
             outside = percent if bound == "min" else mirrored
             sentence = f"with {bound}, {kind} lets {outside:g} % of the samples be {falls} it; write p{mirrored:g}"
             yield mistake(where, sentence)
+
+
+def _both_ways(where: tuple[str, ...], bound: Mapping[str, Any], objective: object) -> Iterator[InitErrorDetails]:
+    """Refuse one percentile of one quantity under a lower bound and as something to be small.
+
+    It is one column, in which a failed sample would have to be below and above all others. Over several scenarios
+    they are two, the least and the worst.
+    """
+    kind = bound["statistic"]
+    if percent_of(kind) is None or bound.get("min") is None or bound.get("worst_of"):
+        return
+    minimised = (
+        isinstance(objective, Mapping) and objective.get("statistic") == kind and not objective.get("worst_of")
+    )
+    if bound.get("max") is not None or minimised:
+        bounded = bound.get("max") is not None
+        remedy = "leave one of the two out" if bounded else "take another percentile in one of the two"
+        sentence = f"{kind} has a min and {'a max' if bounded else 'is an objective'}"
+        yield mistake(where, f"{sentence}, and a failed sample cannot be both too small and too large; {remedy}")
 
 
 def _objections(parameter: Parameter, source: Source, own: tuple[float, float], *, varies: bool) -> Iterator[str]:
