@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO, cast
 
-from divideropt.campaign.config import Campaign, OptimalityConfig, VerificationConfig
+from divideropt.campaign.config import Campaign, OptimalityConfig
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.fields import measure_of
@@ -81,7 +81,7 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
             "variables": _ranges(campaign, asked),
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
             "sensitivity": SensitivityConfig(),
-            "verification": VerificationConfig(sample=0, tolerance=f"{campaign.verification.tolerance} %"),  # type: ignore[arg-type]  # as a file has it
+            "verification": campaign.verification.model_copy(update={"sample": 0}),
             "optimality": OptimalityConfig(points=0),
         }
     )
