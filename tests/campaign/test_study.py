@@ -77,6 +77,7 @@ def test_parameters_are_chosen_with_or_without_a_range(toy):
         (Asked("oat", ("stem_ratio=0.1",)), "'0.1' is not a range"),
         (Asked("oat", ("stem_ratio=0.6..0.1",)), "is not below the upper"),
         (Asked("oat", ("spool_radius=8..20",)), "8 has no unit; write 8 m"),
+        (Asked("oat", ("spool_radius", "spool_radius=1 mm..2 mm")), "spool_radius: given more than once"),
         (Asked("oat", alone=True), "--no-second-order is of method sobol, not oat"),
         (Asked("sobol", (), 1000), "--samples 1000: 1000 is no power of two"),
     ],
@@ -84,6 +85,16 @@ def test_parameters_are_chosen_with_or_without_a_range(toy):
 def test_a_wrong_wish_is_refused_with_a_remedy(asked, words):
     with pytest.raises(UsageError, match=words):
         study_of(default_campaign(), asked)
+
+
+def test_what_a_scenario_sets_cannot_be_studied():
+    text = (Path(__file__).parents[2] / "campaigns" / "duty.yaml").read_text(encoding="utf-8")
+    campaign = parse_campaign(text)
+    for wish in ("kinematic_viscosity", "kinematic_viscosity=15 mm^2/s..66 mm^2/s"):
+        with pytest.raises(UsageError, match=r"^--parameter kinematic_viscosity: scenario quarter_cold_up_1 sets it"):
+            study_of(campaign, Asked("oat", (wish,)))
+    with pytest.raises(FileMistakes, match="kinematic_viscosity is studied, which no scenario can set"):
+        parse_campaign(text + "sensitivity: {parameters: {kinematic_viscosity: [15 mm^2/s, 66 mm^2/s]}}\n")
 
 
 @pytest.mark.parametrize(

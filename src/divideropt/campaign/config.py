@@ -296,13 +296,18 @@ class Campaign(Section):
 
 
 def _scenario_set_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
-    """Say which variables a scenario sets, so that they would vary in some of the simulations only."""
+    """Say what varies, in the campaign or in a study of it, and is set by a scenario: it would vary in the others."""
     scenarios, variables = _section(_section(raw, "model"), "scenarios"), _section(raw, "variables")
+    studied = _section(_section(raw, "sensitivity"), "parameters")
     for scenario in scenarios:
         for name in _section(_section(scenarios, scenario), "set"):
+            place = ("model", "scenarios", scenario, "set", name)
             if name in variables:
                 sentence = f"{name} is a variable, which no scenario can set; delete it here, or from `variables`"
-                yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
+                yield mistake(place, sentence, at_key=True)
+            elif name in studied:
+                sentence = f"{name} is studied, which no scenario can set; delete it here, or from `sensitivity`"
+                yield mistake(place, sentence, at_key=True)
 
 
 def _section(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

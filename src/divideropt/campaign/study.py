@@ -150,25 +150,43 @@ def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float
         return usual
     table = campaign.model.tables().parameters or {}
     known = {**campaign.variables, **_usual(campaign, "oat"), **usual}
-    return dict(_asked_range(text, table, known) for text in asked.parameters)
+    found: dict[str, tuple[float, float]] = {}
+    for text in asked.parameters:
+        name, ends = _asked_range(text, table, known, _set_by(campaign))
+        if name in found:
+            raise UsageError(f"--parameter {name}: given more than once; say it once")
+        found[name] = ends
+    return found
 
 
 def _usual(campaign: Campaign, method: str) -> dict[str, tuple[float, float]]:
     model = campaign.model
     if method != "oat" or not isinstance(model, DividerConfig):
         return dict(campaign.variables)
-    theirs = {name for scenario in model.scenarios.values() for name in scenario.set}
+    theirs = _set_by(campaign)
     return {name: ends for name, ends in THESIS_RANGES.items() if name not in theirs}
 
 
+def _set_by(campaign: Campaign) -> dict[str, str]:
+    """The parameters that scenarios set, each with the first that does."""
+    model = campaign.model
+    changes = model.changes() if isinstance(model, DividerConfig) else {}
+    return {name: scenario for scenario in reversed(changes) for name in changes[scenario]}
+
+
 def _asked_range(
-    text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]]
+    text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]], set_by: Mapping[str, str]
 ) -> tuple[str, tuple[float, float]]:
     """Read `NAME`, whose range is known, or `NAME=LOWER..UPPER`."""
     name, _, written = text.partition("=")
     name = name.strip()
     if name not in table:
         raise UsageError(f"--parameter {text}: {unknown('parameter', name, table)}")
+    if name in set_by:
+        raise UsageError(
+            f"--parameter {name}: scenario {set_by[name]} sets it, where a study could not vary it; study a campaign "
+            "whose scenarios do not"
+        )
     if not written:
         if name not in known:
             example = measure_of(table[name]).write(table[name].default)
