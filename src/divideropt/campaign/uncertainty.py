@@ -9,7 +9,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.distributions import read_source, source_schema, written_source
 from divideropt.campaign.fields import Tables, by_name
-from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sections import Section, mistake, section_of, show, together
 from divideropt.campaign.worst_case import gathered_name
 from divideropt.models import Model, Parameter, Quantity
 from divideropt.models.divider.parameters import PARAMETERS
@@ -91,7 +91,7 @@ def uncertainty_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say what is wrong with every `statistic`, and with what scenarios set, judged on the campaign as written."""
     uncertainty = raw.get("uncertainty")
     for section in ("objectives", "constraints"):
-        for name, entry in _mapping(raw, section).items():
+        for name, entry in section_of(raw, section).items():
             if not isinstance(entry, Mapping) or entry.get("statistic") is None:
                 continue
             where = (section, name, "statistic")
@@ -103,11 +103,11 @@ def uncertainty_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
             elif is_kind(entry["statistic"]):
                 yield from _side_rules(where, entry)
                 if section == "constraints":
-                    yield from _both_ways(where, entry, _mapping(raw, "objectives").get(name))
-    uncertain = _mapping(_mapping(raw, "uncertainty"), "parameters")
-    scenarios = _mapping(_mapping(raw, "model"), "scenarios")
+                    yield from _both_ways(where, entry, section_of(raw, "objectives").get(name))
+    uncertain = section_of(section_of(raw, "uncertainty"), "parameters")
+    scenarios = section_of(section_of(raw, "model"), "scenarios")
     for scenario in scenarios:
-        for name in _mapping(_mapping(scenarios, scenario), "set"):
+        for name in section_of(section_of(scenarios, scenario), "set"):
             if name in uncertain:
                 sentence = f"{name} is uncertain, which no scenario can set; delete it here, or from `uncertainty`"
                 yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
@@ -203,8 +203,3 @@ def _taken_names(quantities: Mapping[str, Quantity]) -> Iterator[InitErrorDetail
             )
             yield mistake((), sentence, at_key=True)
             return
-
-
-def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    section = raw.get(name)
-    return section if isinstance(section, Mapping) else {}
