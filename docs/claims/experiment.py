@@ -13,6 +13,7 @@ from divideropt.models.base import Outcome
 from divideropt.models.divider import FORMULATIONS, QUANTITIES, Scenario, load_step, parameter_set, rig
 from divideropt.models.divider.metrics import measure as quantities_of
 from divideropt.models.divider.response import Response, respond
+from divideropt.problem.simulation import one_thread
 
 SECONDS = 3.0
 """How long a response runs after the step [s]: many times what any of them needs."""
@@ -137,7 +138,8 @@ def respond_in_rig(
 ) -> Response:
     """Simulate one test; arguments as in `measure`."""
     scenario = _scenario(assumed, load_difference, spool_position)
-    return respond(prototype(assumed, fixed_drop), FORMULATIONS[formulation], scenario, SETTINGS)
+    with one_thread():
+        return respond(prototype(assumed, fixed_drop), FORMULATIONS[formulation], scenario, SETTINGS)
 
 
 def _came_out(response: Response) -> tuple[float, float]:

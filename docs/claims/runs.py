@@ -20,6 +20,7 @@ from divideropt.models.divider import (
 )
 from divideropt.models.divider.response import Response, respond
 from divideropt.models.divider.study import THESIS_POINTS, THESIS_RANGES
+from divideropt.problem.simulation import one_thread
 
 AUTHOR_STEP_TIME = 0.6
 """When the load steps in changeall.m, after a cold start [s]."""
@@ -116,7 +117,8 @@ class Runs:
     def response(self, change: Mapping[str, float]) -> Response:
         """Return the response of the base set with a change, for what no quantity says."""
         design = parameter_set("thesis_base") | dict(change)
-        return respond(design, FORMULATIONS[self.variant.formulation], self._test(0.2), SETTINGS)
+        with one_thread():
+            return respond(design, FORMULATIONS[self.variant.formulation], self._test(0.2), SETTINGS)
 
     def _test(self, accumulation_time: float) -> Scenario:
         settled = self.variant.settled
@@ -129,7 +131,8 @@ def simulate(
 ) -> list[tuple[Mapping[str, float], Outcome]]:
     """Simulate designs, every parameter given by name, SI; return quantities by name and the outcome of each."""
     model = Divider(formulation, scenario, SETTINGS)
-    rows, verdicts = model.evaluate(np.array([[design[name] for name in PARAMETERS] for design in designs]))
+    with one_thread():  # with another number of threads some narrow groove ends otherwise
+        rows, verdicts = model.evaluate(np.array([[design[name] for name in PARAMETERS] for design in designs]))
     named = [dict(zip(QUANTITIES, row.tolist(), strict=True)) for row in rows]
     return [(row, verdict.outcome) for row, verdict in zip(named, verdicts, strict=True)]
 

@@ -45,7 +45,8 @@ def _opening() -> Iterator[str]:
         "Chapter 3 is drawn twice, for `conservative` from the settled start that section 3.1 describes, and for "
         "`listing` started cold, the author’s code as he ran it: the test of section 3.1 on Appendix B’s base set, "
         "the ranges, the 100 points and the five values of `changeall.m` (C.2). Time runs from the step; a cold "
-        "start is the 0.6 s before it."
+        "start is the 0.6 s before it. A settled start rests at its equilibrium until the step even where that is "
+        "unstable, since nothing disturbs it: what is said of a response before the step shows in the cold one."
     )
     yield ""
     yield (

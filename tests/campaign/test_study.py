@@ -1,12 +1,13 @@
 """A sensitivity study: what it makes of a campaign, and its store."""
 
 import io
+from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from divideropt.campaign.dump import dump_campaign
-from divideropt.campaign.load import default_campaign, parse_campaign
+from divideropt.campaign.load import default_campaign, load_campaign, parse_campaign
 from divideropt.campaign.plan import build_problem, plan_runs
 from divideropt.campaign.study import Asked, run_study, study_of, study_store
 from divideropt.errors import FileMistakes, StoreError, UsageError
@@ -138,6 +139,18 @@ def test_a_study_may_be_there_before_its_campaign_is_run_anew(toy, tmp_path):
     (tmp_path / "toy" / "letter.txt").write_text("not ours")
     with pytest.raises(UsageError, match="not a store"):
         store.move_aside()
+
+
+def test_what_is_uncertain_or_taken_over_scenarios_is_studied_as_it_is():
+    folder = Path(__file__).parents[2] / "campaigns"
+    robust = study_of(load_campaign(folder / "robust.yaml"), Asked("sobol"))
+    assert robust.uncertainty is None
+    assert set(robust.objectives) == {"steady_state_error", "dynamic_error", "source_pressure"}
+    assert "failed_share" not in robust.constraints
+    duty = load_campaign(folder / "duty.yaml")
+    study = study_of(duty, Asked("oat"))
+    assert study.objectives == duty.objectives  # over the same scenarios
+    assert set(THESIS_RANGES) - set(study.variables) == {"kinematic_viscosity"}  # the scenarios have their own
 
 
 def test_a_folders_name_is_checked(tmp_path):

@@ -1,5 +1,9 @@
 """A model that breaks down on one design costs that design only."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
@@ -91,3 +95,18 @@ def test_what_a_model_breaks_down_with_is_said_in_one_line(error, words):
     fixed = {name: p.default for name, p in model.parameters.items()}
     _, verdicts = simulate(model, fixed, ["x1"], np.array([[0.5], [0.6]]))
     assert [v.text for v in verdicts] == [f"the model broke down: {words}"] * 2
+
+
+LATE = """
+from threadpoolctl import threadpool_info
+from divideropt.problem.simulation import one_thread
+with one_thread():
+    import scipy.linalg
+    print(*(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"))
+"""
+
+
+def test_what_scipy_brings_later_runs_on_one_thread_too():
+    two = {**os.environ, "OPENBLAS_NUM_THREADS": "2"}
+    run = subprocess.run([sys.executable, "-c", LATE], env=two, capture_output=True, text=True, check=True)
+    assert set(run.stdout.split()) == {"1"}

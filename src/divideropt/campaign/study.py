@@ -14,7 +14,6 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.fields import measure_of
 from divideropt.campaign.load import parse_campaign
-from divideropt.campaign.nominal import nominal_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
@@ -23,6 +22,7 @@ from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.errors import IncompleteRunsError, UsageError
 from divideropt.models import Parameter
 from divideropt.models.divider.study import THESIS_RANGES
+from divideropt.models.uncertain import FAILED_SHARE
 from divideropt.store import Store
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", re.ASCII)
@@ -75,10 +75,8 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
     """
     config = campaign.sensitivity
     options = _options(config, asked)
-    certain = campaign if campaign.uncertainty is None else nominal_campaign(campaign)
-    study = certain.model_copy(
+    study = _certain(campaign).model_copy(
         update={
-            "name": campaign.name,
             "nominal": False,
             "variables": _ranges(campaign, asked),
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
@@ -112,6 +110,20 @@ def run_study(
     if failures:
         reasons = "\n  ".join(f"{name}: {reason}" for name, reason in failures.items())
         raise IncompleteRunsError(f"{store.folder}: the study is incomplete:\n  {reasons}\nTo try again:\n  {again}")
+
+
+def _certain(campaign: Campaign) -> Campaign:
+    """Leave uncertainty out: what is asked of statistics is asked of the design as it is, of its samples nothing."""
+    asked = ("objectives", "constraints", "reference_point")
+    sections = {
+        section: {name: entry for name, entry in getattr(campaign, section).items() if name != FAILED_SHARE.name}
+        for section in asked
+    }
+    for section in asked[:2]:
+        sections[section] = {
+            name: entry.model_copy(update={"statistic": None}) for name, entry in sections[section].items()
+        }
+    return campaign.model_copy(update={**sections, "uncertainty": None})
 
 
 def _options(config: SensitivityConfig, asked: Asked) -> Any:

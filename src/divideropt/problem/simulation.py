@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -58,5 +59,6 @@ _entered: list[bool] = []
 
 @cache
 def _linear_algebra() -> ThreadpoolController:
-    """Find the libraries that are loaded, once: it takes milliseconds."""
+    """Find the libraries, once: it takes milliseconds. SciPy has one of its own, not there before its first use."""
+    import_module("scipy.linalg")
     return ThreadpoolController()
