@@ -163,8 +163,9 @@ def quantity_words(name: str, problem: Problem) -> str:
     """Name a quantity for people; of a signed one the magnitude is analysed, which is said."""
     if name == OUTCOME:
         return "outcome ok"
-    words = name.replace("_", " ")
-    return f"magnitude of {words}" if problem.model.quantities[name].signed else words
+    quantity = problem.model.quantities[name]
+    words = axis_of(quantity, ()).words
+    return f"magnitude of {words}" if quantity.signed else words
 
 
 def write_indices(data: StudyData, store: Store) -> None:
