@@ -108,7 +108,9 @@ def house_of_quality(indices: pd.DataFrame, problem: Problem, *, thesis: bool) -
     asked += [] if thesis else [c.quantity.name for c in problem.constraints]
     there = {row.quantity for row in rows}
     rows += [
-        _row(name.replace("_", " ").replace(".", " "), name, totals, problem) for name in dict.fromkeys(asked) if name not in there
+        _row(name.replace("_", " ").replace(".", " "), name, totals, problem)
+        for name in dict.fromkeys(asked)
+        if name not in there
     ]
     return House(names, tuple(rows), _importance(rows), _author_importance(rows, names) if thesis else None)
 
