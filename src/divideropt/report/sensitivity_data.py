@@ -119,10 +119,9 @@ def read_study(store: Store) -> StudyData:
     method, problem, run = method_of(campaign), build_problem(campaign), plan_runs(campaign)[0]
     schema = TableSchema.of(problem)
     parts = [schema.evaluations(part) for part in store.log(run.name, schema).read()]
-    budget = run.options.budget(len(problem.space))
     logged = sum(len(part) for part in parts)
-    notes = [] if logged >= budget else [f"Not finished: {logged} of {budget} designs are simulated."]
-    least = budget // _count(run.options)
+    notes = [] if logged >= run.budget else [f"Not finished: {logged} of {run.budget} designs are simulated."]
+    least = run.budget // _count(run.options)
     if logged < least:
         raise UsageError(
             f"{store.folder}: {logged} designs are logged, and one {_UNITS[method][0]} has {least}: nothing to "
