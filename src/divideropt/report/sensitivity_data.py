@@ -15,7 +15,7 @@ from divideropt.campaign.config import Campaign
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
 from divideropt.errors import UsageError
-from divideropt.problem import Evaluations, Problem
+from divideropt.problem import Evaluations, Problem, one_thread
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.setting import setting_of
 from divideropt.store import Store, TableSchema
@@ -130,7 +130,8 @@ def read_study(store: Store) -> StudyData:
     together = Evaluations.together(parts)
     house, failed_blocks = None, None
     if method == "sobol":
-        sobol = sobol_study(together, problem)
+        with one_thread():  # with another number of threads the last bits of the intervals would be others
+            sobol = sobol_study(together, problem)
         table, undefined, failures = sobol.indices, sobol.undefined, sobol.failures
         units, failed_blocks, left_over = sobol.blocks, sobol.failed_blocks, sobol.left_over
         house = house_of_quality(table, problem, thesis=bool(dividers(problem.model)))
