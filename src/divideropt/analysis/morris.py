@@ -73,13 +73,13 @@ def morris_study(evaluations: Evaluations, problem: Problem) -> MorrisStudy:
                 undefined.append(Undefined(name, item.treatment, reason))
                 continue
             size = size_of(item.values[item.kept])
-            item = replace(item, values=item.values / size)
-            found = _effects(item, ways)
+            scaled = replace(item, values=item.values / size)
+            found = _effects(scaled, ways)
             if item.kept.all():
-                summary = _by_salib(evaluations.designs, item.values, problem.space, ways)
+                summary = size * _by_salib(evaluations.designs, scaled.values, problem.space, ways)
             else:
-                summary = np.array([_summary(column[np.isfinite(column)]) for column in found.T])
-            rows.append(_rows(name, item.treatment, summary * size, np.isfinite(found).mean(axis=0), problem, trajectories))
+                summary = size * np.array([_summary(column[np.isfinite(column)]) for column in found.T])
+            rows.append(_rows(name, item.treatment, summary, np.isfinite(found).mean(axis=0), problem, trajectories))
     table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=list(COLUMNS))
     failures = failures_of(evaluations, problem.space)
     return MorrisStudy(table, tuple(undefined), failures, trajectories, left_over)
