@@ -230,7 +230,7 @@ def sensitivity(
     options += ["--no-second-order"] if alone else []
     chosen = [word for name in parameters for word in ("--parameter", name)]
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
-    kept = study_store(Store(folder), study or method)
+    kept = study_store(Store(folder), method if study is None else study)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
     found = None if method == "oat" else read_study(kept)
     if found is not None:

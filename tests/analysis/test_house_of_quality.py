@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -147,3 +148,12 @@ def test_a_model_of_somebodys_own_has_the_computed_house_alone():
     assert house.author_importance is None
     assert house.differences == ()
     assert "author" not in house_sentence(house, {name: name for name in OPTIMISED})
+
+
+def test_an_index_without_an_interval_is_no_score_of_0():
+    """A resample in which nothing varies leaves the interval undefined: nothing is known, which is not 0."""
+    problem = valve()
+    made = table({"steady_state_error": [0.5, 0.3, 0.2, 0.1, 0.0]})
+    assert house_of_quality(made, problem, thesis=True).rows[0].scores is not None
+    made["low"] = np.nan
+    assert house_of_quality(made, problem, thesis=True).rows[0].scores is None

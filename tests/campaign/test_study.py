@@ -77,9 +77,12 @@ def test_parameters_are_chosen_with_or_without_a_range(toy):
         (Asked("oat", ("stem_ratio=0.1",)), "'0.1' is not a range"),
         (Asked("oat", ("stem_ratio=0.6..0.1",)), "is not below the upper"),
         (Asked("oat", ("spool_radius=8..20",)), "8 has no unit; write 8 m"),
-        (Asked("oat", ("spool_radius", "spool_radius=1 mm..2 mm")), "spool_radius: given more than once"),
         (Asked("oat", alone=True), "--no-second-order is of method sobol, not oat"),
         (Asked("sobol", (), 1000), "--samples 1000: 1000 is no power of two"),
+        (Asked("sobol", (), 2**21), "--samples 2097152: 2097152 is too large; the most permitted is 1048576"),
+        (Asked("morris", (), 5), "--samples 5: 5 is too small; the least permitted is 10"),
+        (Asked("oat", ("spool_radius=",)), "--parameter spool_radius=: '' is not a range; write NAME=LOWER..UPPER"),
+        (Asked("oat", ("spool_radius", "spool_radius=8 mm..9 mm")), "spool_radius is named a second time"),
     ],
 )
 def test_a_wrong_wish_is_refused_with_a_remedy(asked, words):
@@ -167,3 +170,9 @@ def test_what_is_uncertain_or_taken_over_scenarios_is_studied_as_it_is():
 def test_a_folders_name_is_checked(tmp_path):
     with pytest.raises(UsageError, match=r"--study '\.\./x' cannot name a folder"):
         study_store(Store(tmp_path), "../x")
+    with pytest.raises(UsageError, match="--study '' cannot name a folder"):
+        study_store(Store(tmp_path), "")
+    file = tmp_path / "file"
+    file.touch()
+    with pytest.raises(UsageError, match="a file, not a folder; name another --store"):
+        study_store(Store(file), "oat")

@@ -127,8 +127,9 @@ def scores(totals: Sequence[float], low: Sequence[float]) -> tuple[int, ...]:
 def _row(words: str, quantity: str, totals: pd.DataFrame, problem: Problem) -> Criterion:
     found = totals[totals["quantity"] == quantity].set_index("variable")
     names = problem.space.names
-    known = set(names) <= set(found.index)
-    given = scores(*(found.loc[list(names), column].tolist() for column in ("value", "low"))) if known else None
+    columns = [found.reindex(list(names))[column].tolist() for column in ("value", "low")]
+    known = all(math.isfinite(number) for column in columns for number in column)  # an interval may not be defined
+    given = scores(*columns) if known else None
     weights = {o.quantity.name: o.weight for o in problem.objectives}
     demanded = {c.quantity.name for c in problem.constraints}
     return Criterion(words, quantity, weights.get(quantity), quantity not in weights and quantity in demanded, given)

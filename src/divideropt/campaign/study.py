@@ -9,6 +9,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO, cast
 
+from pydantic import ValidationError
+
 from divideropt.campaign.config import Campaign, OptimalityConfig
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
@@ -17,7 +19,7 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
-from divideropt.campaign.sections import unknown
+from divideropt.campaign.sections import relay, unknown
 from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.errors import IncompleteRunsError, UsageError
 from divideropt.models import Parameter
@@ -49,13 +51,15 @@ def study_store(campaign_store: Store, name: str) -> Store:
     """Return the store of a study, there or not.
 
     Raises:
-        UsageError: The name cannot be a folder's.
+        UsageError: The name cannot be a folder's, or the campaign's folder is a file.
         StoreError: A file is where a folder should be.
     """
     if not _NAME.fullmatch(name):
         raise UsageError(
             f"--study {name!r} cannot name a folder; use 1 to 64 of A-Z, a-z, 0-9, - and _, a letter or digit first"
         )
+    if campaign_store.folder.exists() and not campaign_store.folder.is_dir():
+        raise UsageError(f"{campaign_store.folder}: a file, not a folder; name another --store")
     return campaign_store.study(name)
 
 
@@ -138,9 +142,9 @@ def _options(config: SensitivityConfig, asked: Asked) -> Any:
     name = {"oat": "points", "morris": "trajectories", "sobol": "samples"}[asked.method]
     try:
         return type(options)(**{**dataclasses.asdict(options), name: asked.count})
-    except ValueError as error:
-        reason = cast(Any, error).errors()[0]["msg"].removeprefix("Value error, ")
-        raise UsageError(f"--samples {asked.count}: {reason[0].lower()}{reason[1:]}") from None
+    except ValidationError as error:
+        (found, *_) = relay(error)
+        raise UsageError(f"--samples {asked.count}: {cast(Any, found['type']).message()}") from None
 
 
 def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float]]:
@@ -154,7 +158,7 @@ def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float
     for text in asked.parameters:
         name, ends = _asked_range(text, table, known, _set_by(campaign))
         if name in found:
-            raise UsageError(f"--parameter {name}: given more than once; say it once")
+            raise UsageError(f"--parameter {text}: {name} is named a second time; leave one of the two away")
         found[name] = ends
     return found
 
@@ -178,7 +182,7 @@ def _asked_range(
     text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]], set_by: Mapping[str, str]
 ) -> tuple[str, tuple[float, float]]:
     """Read `NAME`, whose range is known, or `NAME=LOWER..UPPER`."""
-    name, _, written = text.partition("=")
+    name, equals, written = text.partition("=")
     name = name.strip()
     if name not in table:
         raise UsageError(f"--parameter {text}: {unknown('parameter', name, table)}")
@@ -187,7 +191,7 @@ def _asked_range(
             f"--parameter {name}: scenario {set_by[name]} sets it, where a study could not vary it; study a campaign "
             "whose scenarios do not"
         )
-    if not written:
+    if not equals:
         if name not in known:
             example = measure_of(table[name]).write(table[name].default)
             raise UsageError(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 import pyarrow as pa
 
@@ -185,7 +186,21 @@ def read_indices(store: Store) -> pd.DataFrame | None:
         table = pd.read_parquet(path)
     except (OSError, ValueError, pa.ArrowException):
         return None
-    return table if list(table.columns) == list(COLUMNS) else None
+    return table if _is_of_indices(table) else None
+
+
+def _is_of_indices(table: pd.DataFrame) -> bool:
+    """Whether a table is one that a study has written: a file in a store may be anybody's."""
+    if list(table.columns) != list(COLUMNS):
+        return False
+    numbers, words = table[["value", "low", "high", "samples", "used"]], ["quantity", "variable", "kind", "treatment"]
+    if not all(pd.api.types.is_numeric_dtype(kind) for kind in numbers.dtypes):
+        return False
+    if not bool(np.isfinite(numbers[["value", "samples"]].to_numpy(np.float64)).all()):
+        return False
+    texts = all(isinstance(text, str) for column in words for text in table[column])
+    keys = table[[*words, "with", "samples"]].astype(str)
+    return texts and not bool(keys.duplicated().any())
 
 
 def _count(options: object) -> int:
