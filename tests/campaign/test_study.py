@@ -9,7 +9,7 @@ import pytest
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.load import default_campaign, load_campaign, parse_campaign
 from divideropt.campaign.plan import build_problem, plan_runs
-from divideropt.campaign.study import Asked, run_study, study_of, study_store
+from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
 from divideropt.errors import FileMistakes, StoreError, UsageError
 from divideropt.models.divider.study import THESIS_RANGES
 from divideropt.store import Store
@@ -165,6 +165,19 @@ def test_what_is_uncertain_or_taken_over_scenarios_is_studied_as_it_is():
     study = study_of(duty, Asked("oat"))
     assert study.objectives == duty.objectives  # over the same scenarios
     assert set(THESIS_RANGES) - set(study.variables) == {"kinematic_viscosity"}  # the scenarios have their own
+
+
+def test_a_study_is_not_put_into_another_campaigns_store(toy, tmp_path):
+    home = Store(tmp_path / "toy")
+    check_home(home, toy)
+    home.write_campaign(dump_campaign(toy))
+    check_home(home, toy)
+    check_home(home, parse_campaign(TOY.replace("generations: 2", "generations: 9")))
+    with pytest.raises(StoreError, match=r"belongs to another campaign:\n  objectives\.f1\.goal: 0\.2 in the store"):
+        check_home(home, parse_campaign(TOY.replace("goal: 0.2", "goal: 0.3")))
+    home.campaign_path.write_text("name: toy")
+    with pytest.raises(StoreError, match="damaged"):
+        check_home(home, toy)
 
 
 def test_a_folders_name_is_checked(tmp_path):

@@ -14,14 +14,15 @@ from pydantic import ValidationError
 from divideropt.campaign.config import Campaign, OptimalityConfig
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.extend import PROBLEM, differences
 from divideropt.campaign.fields import measure_of
-from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.sections import relay, unknown
 from divideropt.campaign.sensitivity import SensitivityConfig
-from divideropt.errors import IncompleteRunsError, UsageError
+from divideropt.errors import IncompleteRunsError, StoreError, UsageError
 from divideropt.models import Parameter
 from divideropt.models.divider.study import THESIS_RANGES
 from divideropt.models.uncertain import FAILED_SHARE
@@ -61,6 +62,23 @@ def study_store(campaign_store: Store, name: str) -> Store:
     if campaign_store.folder.exists() and not campaign_store.folder.is_dir():
         raise UsageError(f"{campaign_store.folder}: a file, not a folder; name another --store")
     return campaign_store.study(name)
+
+
+def check_home(campaign_store: Store, campaign: Campaign) -> None:
+    """Check that a study is not put into the store of another campaign, nor into a damaged one.
+
+    Raises:
+        StoreError: There is a store, and it is.
+    """
+    if not campaign_store.exists:
+        return
+    found = list(differences(stored_campaign(campaign_store), campaign, ("name", *PROBLEM)))
+    if found:
+        raise StoreError(
+            f"{campaign_store.folder}: this store belongs to another campaign:\n  "
+            + "\n  ".join(found)
+            + "\nName another folder for the study (--store)."
+        )
 
 
 def study_of(campaign: Campaign, asked: Asked) -> Campaign:
