@@ -31,6 +31,17 @@ def do(page, folder, environment, without=()):
         assert wrong is None, f"{page}, after\n{block.text}\nno line {wrong!r} where it should be, but\n{printed}"
 
 
+def sphinx(source, built):
+    """Build pages as `poe docs` does."""
+    return subprocess.run(
+        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", source, built],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{DOCS}"},
+    )
+
+
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory):
     return here(tmp_path_factory.mktemp("commands"))
@@ -78,6 +89,44 @@ def test_the_tutorial_is_followed_to_the_letter_in_a_fresh_clone(tmp_path):
     do("tutorial.md", clone, environment | {"PATH": f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"})
 
 
+OUTPUT = "one\ntwo: 2 s\nthree\n"
+
+
+@pytest.mark.parametrize(
+    "expected", ["one\ntwo: 2 s\nthree", "one\ntwo: … s\nthree", "one\n…\nthree", "…\nthree", "one\n…"]
+)
+def test_an_output_agrees_with_what_a_page_says_of_it(expected):
+    assert agrees(OUTPUT, expected) is None
+
+
+@pytest.mark.parametrize(
+    ("expected", "wrong"),
+    [
+        ("one\nthree", "three"),
+        ("one\ntwo: 3 s\n…", "two: 3 s"),
+        ("…\nthree\none", "one"),
+        ("one\ntwo: … m\nthree", "two: … m"),
+        ("one\ntwo: 2 s", "more lines than are shown"),
+        ("one\n…\nfour", "four"),
+    ],
+)
+def test_an_output_that_differs_does_not(expected, wrong):
+    assert agrees(OUTPUT, expected) == wrong
+
+
+def test_a_formula_that_is_not_understood_is_a_warning_with_its_place(tmp_path):
+    settings = {
+        "extensions": ["myst_parser", "mathml"],
+        "html_math_renderer": "mathml",
+        "myst_enable_extensions": ["dollarmath"],
+    }
+    (tmp_path / "conf.py").write_text("".join(f"{name} = {value!r}\n" for name, value in settings.items()))
+    (tmp_path / "index.md").write_text("# Title\n\n$$\n\\nonsense{x}\n$$\n")
+    done = sphinx(tmp_path, tmp_path / "built")
+    assert done.returncode == 1
+    assert re.search(r"index\.md:\d+: WARNING: formula not understood: .*nonsense", done.stderr)
+
+
 def test_no_page_that_is_followed_is_forgotten():
     fenced = {
         name
@@ -88,14 +137,8 @@ def test_no_page_that_is_followed_is_forgotten():
 
 
 def test_the_documentation_builds_without_a_warning(tmp_path):
-    words = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", DOCS, tmp_path / "built"],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-    )
-    assert (words.returncode, words.stderr) == (0, "")
+    done = sphinx(DOCS, tmp_path / "built")
+    assert (done.returncode, done.stderr) == (0, "")
     html = {path: path.read_text(encoding="utf-8") for path in (tmp_path / "built").rglob("*.html")}
     assert html[tmp_path / "built" / "model" / "equations.html"].count("<math") > 100
     fetched = re.compile(r"""<(?:script|link|img)[^>]*(?:src|href)="(?:https?:)?//""")
