@@ -96,7 +96,7 @@ def test_it_counts_what_does_not_stand_the_whole_campaign(folder, data):
     assert (cost.known, cost.points, cost.size) == (len(known),) * 3
     assert cost.feasible == (ok & ~above).sum()
     counted = {reason.words: reason.count for reason in cost.reasons}
-    assert counted.get("worst.source pressure above 30 MPa", 0) == above.sum()
+    assert counted.get("worst source pressure above 30 MPa", 0) == above.sum()
     assert sum(counted.values()) == len(known) - cost.feasible
     assert len(reasons_table(data).rows) == len(counted) > 0
     placed = [place for place in cost.placed if place.nominal]

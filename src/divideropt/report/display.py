@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.divider.scenarios import GATHERED
 from divideropt.models.statistic import parted
 from divideropt.models.statistic import words_of as statistic_words
 
@@ -111,10 +112,11 @@ def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
 
 
 def _words_of(name: str) -> str:
-    """Word a column's name; `p95.settling_time` is the `95th percentile of settling time`."""
+    """Word a column's name: the `95th percentile of settling time`, the `worst settling time`."""
     statistic = parted(name)
     if statistic is None:
-        return name.replace("_", " ")
+        gathered, _, quantity = name.partition(".")
+        return (f"{gathered} {quantity}" if gathered in GATHERED else name).replace("_", " ")
     kind, quantity = statistic
     return f"{statistic_words(kind)} of {_words_of(quantity)}"
 

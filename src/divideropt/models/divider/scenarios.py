@@ -18,6 +18,10 @@ AS_GOOD_AS_EQUAL = 1e-3
 """Part of a magnitude within which two scenarios are equally bad: some times what the solver's tolerance leaves."""
 
 
+GATHERED = ("worst", "least")
+"""What the name of a quantity begins with that is gathered over scenarios: the largest of it, the smallest."""
+
+
 @dataclass(frozen=True)
 class Worst:
     """The worst of one quantity over some scenarios, a quantity itself.
@@ -35,7 +39,7 @@ class Worst:
     @property
     def name(self) -> str:
         """Name of the quantity it makes, `worst.settling_time` or `least.stability_margin`."""
-        return f"{'least' if self.least else 'worst'}.{self.quantity}"
+        return f"{GATHERED[self.least]}.{self.quantity}"
 
 
 @dataclass(frozen=True)
