@@ -73,7 +73,7 @@ def follow(
                 printed = printed.rpartition("-- here\n")[2]
                 python += "\n" + block.text
             else:
-                printed = _run(["bash", "-euo", "pipefail", "-c", block.text], folder, environment)
+                printed = _run(["bash", "-eu", "-c", block.text], folder, environment)
             yield block, printed
 
 
