@@ -219,7 +219,7 @@ def sensitivity(
     divideropt sensitivity campaigns/divider.yaml --parameter 'stem_ratio=0.1..0.6' --study stem
     """  # noqa: D301 (\b is click's)
     asked = _load(campaign)
-    from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
     from divideropt.report import read_study, study_text, write_study
     from divideropt.store import Store
 
@@ -230,7 +230,8 @@ def sensitivity(
     options += ["--no-second-order"] if alone else []
     chosen = [word for name in parameters for word in ("--parameter", name)]
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
-    kept = study_store(Store(folder), study or method)
+    check_home(Store(folder), asked)
+    kept = study_store(Store(folder), method if study is None else study)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
     found = None if method == "oat" else read_study(kept)
     if found is not None:

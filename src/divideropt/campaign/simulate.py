@@ -17,6 +17,7 @@ from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Response
 from divideropt.models.divider.scenarios import BASE
+from divideropt.problem import one_thread
 from divideropt.units import parse_measure
 
 POINTS_PER_STEP = 16
@@ -68,7 +69,7 @@ def simulate(campaign: Campaign, settings: Sequence[str], scenario: str = BASE) 
     """
     model, parameters = chosen_design(campaign, settings, scenario)
     try:
-        with np.errstate(all="ignore"):  # a failed design says so by its outcome
+        with one_thread(), np.errstate(all="ignore"):  # a failed design says so by its outcome
             response = model.respond(parameters)
             return SimulatedResponse(_table(response), measure(response)[1])
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -119,6 +119,12 @@ def _words_of(name: str) -> str:
         return (f"{gathered} {quantity}" if gathered in GATHERED else name).replace("_", " ")
     kind, quantity = statistic
     return f"{statistic_words(kind)} of {_words_of(quantity)}"
+
+
+def labels_of(axes: Sequence[Axis]) -> list[str]:
+    """Short labels, all different: a figure puts two of one label in one place. Symbols, else words, else names."""
+    symbols, words = [axis.symbol or axis.words for axis in axes], [axis.words for axis in axes]
+    return next((found for found in (symbols, words) if len(set(found)) == len(axes)), [axis.name for axis in axes])
 
 
 def shown_as(unit: str, values: Iterable[float]) -> Shown:
