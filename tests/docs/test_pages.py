@@ -66,6 +66,7 @@ def test_the_store_reads_as_its_page_says(followed, environment):
     do("how-to/read-the-store.md", followed, environment)
 
 
+@pytest.mark.slow
 def test_a_model_of_ones_own_runs_as_its_page_says(tmp_path, environment):
     do("how-to/own-model.md", tmp_path, environment)
     spring = next(block for block in blocks(DOCS / "how-to/own-model.md") if block.file == "spring.py")
