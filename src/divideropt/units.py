@@ -17,7 +17,7 @@ NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 
 _FACTOR = r"(?:[A-Za-zµμ°%]{1,24}(?:\^-?[1-9])?)"
 UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
-"""Pattern of a unit: at most six factors, each with at most one digit of power, no parentheses, no numbers."""
+"""Pattern of a unit of at most six factors, each with at most one digit of power, no parentheses, no numbers."""
 
 LONGEST = 80
 """Characters of a measure."""

@@ -49,7 +49,7 @@ class Criterion:
 
     @property
     def importance(self) -> str:
-        """The weight as the author writes it: a number, D for a demand, or nothing."""
+        """The weight as the author writes it, which is a number, D for a demand, or nothing."""
         return f"{self.weight:g}" if self.weight is not None else "D" if self.demand else ""
 
 

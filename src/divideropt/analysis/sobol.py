@@ -53,8 +53,8 @@ def sobol_study(evaluations: Evaluations, problem: Problem) -> SobolStudy:
 
     Args:
         evaluations: In the order of `SALib.sample.sobol`; an unfinished last block is left out.
-        problem: What was simulated; of signed quantities the magnitude is analysed, as objectives and constraints
-        have it.
+        problem: What was simulated; of signed quantities the magnitude is analysed, as objectives and
+            constraints have it.
 
     Returns:
         The indices of all blocks under every treatment, and under the first of each quantity those of N/2, N/4, …

@@ -115,7 +115,7 @@ class TableSchema:
 
     @property
     def front(self) -> pa.Schema:
-        """A front's columns: the results, whether simulating the design again gave the same, and its KKT residual."""
+        """The columns of a front, with whether simulating a design again gave the same, and with its KKT residual."""
         fields = [_text("verified", Role.VERIFICATION, _meaning(VERIFIED))]
         fields += [_number(deviation_of(name), "", "", DEVIATION, Role.VERIFICATION) for name in self.objectives]
         fields += [
