@@ -14,26 +14,15 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
 
+from divideropt.models.divider.study import LISTING_NAMES
+
 HERE = Path(__file__).parent
 CAMPAIGN = HERE / "listing_sensitivity.yaml"
 REFERENCE = HERE.parent / "tests" / "reference" / "listing_sensitivity.csv"
-
-NAMES: Mapping[str, str] = MappingProxyType(
-    {
-        "r": "spool_radius",
-        "b": "groove_width",
-        "deltaPt": "total_pressure_drop",
-        "Po_Pt": "fixed_drop_ratio",
-        "frac_open": "centred_opening",
-        "trim": "rim_thickness",
-    }
-)
-"""Our names of the parameters in his file."""
 
 SOLVED = 2
 """The status of a design that his solver completed."""
@@ -106,7 +95,7 @@ def agreement(ours: pd.DataFrame) -> list[Agreement]:
     """
     theirs = pd.read_csv(REFERENCE)
     found = []
-    for batch, (column, name) in enumerate(NAMES.items()):
+    for batch, (column, name) in enumerate(LISTING_NAMES.items()):
         his = theirs[theirs["param"] == column].reset_index(drop=True)
         mine = ours[ours["batch"] == batch].reset_index(drop=True)
         if len(his) != len(mine) or not np.allclose(his["value"], mine[name], rtol=1e-12, atol=0.0):

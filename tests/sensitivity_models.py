@@ -31,6 +31,14 @@ class Ishigami:
         return np.column_stack([f, np.full(len(f), 3.0)]), [Verdict(Outcome.OK)] * len(f)
 
 
+class SmallIshigami(Ishigami):
+    """The same in numbers of some 1e-15."""
+
+    def evaluate(self, designs):
+        quantities, verdicts = super().evaluate(designs)
+        return 1e-15 * quantities, verdicts
+
+
 class GFunction:
     """The product of (|4 x_i - 2| + a_i)/(1 + a_i), of six variables within 0 and 1."""
 

@@ -9,19 +9,10 @@ import pandas as pd
 
 from claims.runs import Runs
 from divideropt.models.base import FloatArray, Outcome
+from divideropt.models.divider.study import LISTING_NAMES
 
 FILE = Path(__file__).parents[2] / "tests" / "reference" / "listing_sensitivity.csv"
 """The author's code, run in GNU Octave; `tests/reference/README.md` says how."""
-
-NAMES: Mapping[str, str] = {
-    "r": "spool_radius",
-    "b": "groove_width",
-    "deltaPt": "total_pressure_drop",
-    "Po_Pt": "fixed_drop_ratio",
-    "frac_open": "centred_opening",
-    "trim": "rim_thickness",
-}
-"""Our names of the parameters in that file."""
 
 SOLVED = 2
 """The status of a design that his solver completed."""
@@ -54,7 +45,7 @@ def nearness(runs: Runs, limit: int | None = None) -> list[Nearness]:
     """
     theirs = pd.read_csv(FILE)
     found = []
-    for column, name in NAMES.items():
+    for column, name in LISTING_NAMES.items():
         rows = theirs[theirs["param"] == column]
         if limit is not None:
             rows = rows.iloc[np.linspace(0, len(rows) - 1, limit).astype(int)]

@@ -1,5 +1,8 @@
 """The rule of the house on made-up indices, and the author's numbers as the thesis prints them."""
 
+from dataclasses import replace
+
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -106,6 +109,24 @@ def test_the_importance_of_his_numbers_leaves_cost_and_demands_out():
     assert house.author_importance == pytest.approx([21 / 28, 19 / 28, 28 / 28, 14 / 28, 15 / 28])
 
 
+def test_an_objective_that_the_author_did_not_have_counts_too():
+    problem = valve()
+    regulation = Objective(replace(QUANTITIES["load_regulation"], name="worst.load_regulation"), weight=3.0)
+    problem = replace(problem, objectives=(regulation, *problem.objectives[1:]))
+    indices = INDICES | {"worst.load_regulation": (0.0, 0.0, 0.0, 0.1, 0.9)}
+    house = house_of_quality(table(indices), problem, thesis=True)
+    assert [row.words for row in house.rows[:5]] == [row.words for row in THESIS_HOUSE]
+    (more,) = house.rows[5:]
+    assert (more.words, more.weight, more.scores) == ("worst load regulation", 3.0, (0, 0, 0, 1, 4))
+    assert (more.author, more.author_weight) == (None, None)
+    assert house.rows[0].importance == ""  # his first criterion is none of the campaign's
+    losses = (0, 0, 2, 1, 4)
+    assert house.importance == pytest.approx(
+        [(3 * a + 3 * 4 + c) / (4 * 7) for a, c in zip(more.scores, losses, strict=True)]
+    )
+    assert house.author_importance == house_of_quality(table(INDICES), valve(), thesis=True).author_importance
+
+
 def test_the_sentence_follows_from_the_numbers():
     house = house_of_quality(table(INDICES | {"dynamic_error": (0.4, 0.0, 0.0, 0.0, 0.0)}), valve(), thesis=True)
     assert house.worthwhile == ("spool_radius",)
@@ -127,3 +148,12 @@ def test_a_model_of_somebodys_own_has_the_computed_house_alone():
     assert house.author_importance is None
     assert house.differences == ()
     assert "author" not in house_sentence(house, {name: name for name in OPTIMISED})
+
+
+def test_an_index_without_an_interval_is_no_score_of_0():
+    """A resample in which nothing varies leaves the interval undefined: nothing is known, which is not 0."""
+    problem = valve()
+    made = table({"steady_state_error": [0.5, 0.3, 0.2, 0.1, 0.0]})
+    assert house_of_quality(made, problem, thesis=True).rows[0].scores is not None
+    made["low"] = np.nan
+    assert house_of_quality(made, problem, thesis=True).rows[0].scores is None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from SALib.analyze.sobol import analyze
 
-from divideropt.analysis.pick_freeze import RESAMPLES, Blocks, _saltelli, blocks_of, by_pairs, whole
+from divideropt.analysis.pick_freeze import RESAMPLES, Blocks, _saltelli, blocks_of, by_pairs, size_of, whole
 from sensitivity_models import GFunction, Ishigami, g_indices, ishigami_indices, sample
 
 
@@ -44,6 +44,52 @@ def test_indices_and_widths_are_those_of_salib(second_order):
     np.testing.assert_allclose(found.values, flat, rtol=1e-12, atol=1e-14)
     chance = 4 / np.sqrt(2 * RESAMPLES)  # four standard errors of a standard deviation from so many resamples
     np.testing.assert_allclose(found.half, widths, rtol=chance)
+
+
+@pytest.mark.parametrize("exponent", [1000, 600, -600, -1015])
+@pytest.mark.parametrize("pairs", [False, True])
+def test_the_size_of_a_quantity_changes_no_digit(exponent, pairs):
+    """Squares of such numbers are infinite or 0, and so were the indices."""
+    model = GFunction()
+    designs = sample(model, 64)
+    blocks = blocks_of(designs)
+    values = model.evaluate(designs)[0][:, 0].reshape(-1, blocks.size)
+    kept = np.full(values.shape, True)
+    plain, scaled = (
+        by_pairs(found, kept, blocks, 32) if pairs else whole(found, blocks)
+        for found in (values, values * 2.0**exponent)
+    )
+    assert (np.abs(plain.values) > 0.0).all()
+    np.testing.assert_array_equal(scaled.values, plain.values)
+    np.testing.assert_array_equal(scaled.half, plain.half)
+
+
+@pytest.mark.parametrize("values", [[0.0], [1.0, -1.5], [1e308], [5e-324], [-3e-310, 0.0]])
+def test_what_is_divided_by_its_size_has_squares(values):
+    size = size_of(np.array(values))
+    assert np.isfinite(size)
+    assert size > 0.0
+    assert np.frexp(size)[0] == 0.5  # a power of two
+    assert np.abs(np.array(values) / size).max() < 2.0
+
+
+def test_a_resample_in_which_nothing_varies_makes_no_noise():
+    """Warnings are errors here. One resample in eight misses both blocks that are out of line; mean and deviation of
+    the values are 0 and 4 without rounding, so that the variance of what is left is 0."""
+    blocks = Blocks(3, second_order=True)
+    values = np.ones((34, blocks.size))
+    values[[5, 20]] = -16.0
+    found = whole(values, blocks)
+    assert np.isfinite(found.values).all()
+    assert np.isnan(found.half).all()
+
+
+def test_what_varies_only_where_no_variance_is_taken_has_no_indices():
+    """SALib warns and says 0."""
+    blocks = blocks_of(sample(GFunction(), 32))
+    values = np.ones((32, blocks.size))
+    values[5, 1] = 2.0
+    assert np.isnan(whole(values, blocks).values).all()
 
 
 def test_our_own_terms_make_the_indices_of_salib():

@@ -1,5 +1,7 @@
 """Studies as a user has them: every quantity, failures told, nothing undefined drawn as a number."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from SALib.analyze.morris import analyze
@@ -185,6 +187,17 @@ def test_elementary_effects_are_those_of_salib():
     np.testing.assert_allclose(ours[:, 0], theirs["mu"], rtol=1e-9)
     np.testing.assert_allclose(ours[:, 1], theirs["mu_star"], rtol=1e-9)
     np.testing.assert_allclose(ours[:, 2], theirs["sigma"], rtol=1e-9)
+
+
+@pytest.mark.parametrize("exponent", [900, -900])
+def test_effects_of_numbers_without_squares_are_no_zeros(exponent):
+    problem = problem_of(Ishigami(), "f")
+    evaluations = problem.simulate(trajectories(Ishigami(), 20))
+    plain = of(morris_study(evaluations, problem), "f", "mu_star")
+    scaled = dataclasses.replace(evaluations, quantities=evaluations.quantities * 2.0**exponent)
+    found = of(morris_study(scaled, problem), "f", "mu_star")
+    np.testing.assert_array_equal(found["value"], plain["value"] * 2.0**exponent)
+    np.testing.assert_array_equal(found["high"], plain["high"] * 2.0**exponent)
 
 
 def test_a_step_from_or_to_a_failed_design_gives_no_effect():

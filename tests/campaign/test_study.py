@@ -9,7 +9,7 @@ import pytest
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.load import default_campaign, load_campaign, parse_campaign
 from divideropt.campaign.plan import build_problem, plan_runs
-from divideropt.campaign.study import Asked, run_study, study_of, study_store
+from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
 from divideropt.errors import FileMistakes, StoreError, UsageError
 from divideropt.models.divider.study import THESIS_RANGES
 from divideropt.store import Store
@@ -79,11 +79,25 @@ def test_parameters_are_chosen_with_or_without_a_range(toy):
         (Asked("oat", ("spool_radius=8..20",)), "8 has no unit; write 8 m"),
         (Asked("oat", alone=True), "--no-second-order is of method sobol, not oat"),
         (Asked("sobol", (), 1000), "--samples 1000: 1000 is no power of two"),
+        (Asked("sobol", (), 2**21), "--samples 2097152: 2097152 is too large; the most permitted is 1048576"),
+        (Asked("morris", (), 5), "--samples 5: 5 is too small; the least permitted is 10"),
+        (Asked("oat", ("spool_radius=",)), "--parameter spool_radius=: '' is not a range; write NAME=LOWER..UPPER"),
+        (Asked("oat", ("spool_radius", "spool_radius=8 mm..9 mm")), "spool_radius is named a second time"),
     ],
 )
 def test_a_wrong_wish_is_refused_with_a_remedy(asked, words):
     with pytest.raises(UsageError, match=words):
         study_of(default_campaign(), asked)
+
+
+def test_what_a_scenario_sets_cannot_be_studied():
+    text = (Path(__file__).parents[2] / "campaigns" / "duty.yaml").read_text(encoding="utf-8")
+    campaign = parse_campaign(text)
+    for wish in ("kinematic_viscosity", "kinematic_viscosity=15 mm^2/s..66 mm^2/s"):
+        with pytest.raises(UsageError, match=r"^--parameter kinematic_viscosity: scenario quarter_cold_up_1 sets it"):
+            study_of(campaign, Asked("oat", (wish,)))
+    with pytest.raises(FileMistakes, match="kinematic_viscosity is studied, which no scenario can set"):
+        parse_campaign(text + "sensitivity: {parameters: {kinematic_viscosity: [15 mm^2/s, 66 mm^2/s]}}\n")
 
 
 @pytest.mark.parametrize(
@@ -153,6 +167,25 @@ def test_what_is_uncertain_or_taken_over_scenarios_is_studied_as_it_is():
     assert set(THESIS_RANGES) - set(study.variables) == {"kinematic_viscosity"}  # the scenarios have their own
 
 
+def test_a_study_is_not_put_into_another_campaigns_store(toy, tmp_path):
+    home = Store(tmp_path / "toy")
+    check_home(home, toy)
+    home.write_campaign(dump_campaign(toy))
+    check_home(home, toy)
+    check_home(home, parse_campaign(TOY.replace("generations: 2", "generations: 9")))
+    with pytest.raises(StoreError, match=r"belongs to another campaign:\n  objectives\.f1\.goal: 0\.2 in the store"):
+        check_home(home, parse_campaign(TOY.replace("goal: 0.2", "goal: 0.3")))
+    home.campaign_path.write_text("name: toy")
+    with pytest.raises(StoreError, match="damaged"):
+        check_home(home, toy)
+
+
 def test_a_folders_name_is_checked(tmp_path):
     with pytest.raises(UsageError, match=r"--study '\.\./x' cannot name a folder"):
         study_store(Store(tmp_path), "../x")
+    with pytest.raises(UsageError, match="--study '' cannot name a folder"):
+        study_store(Store(tmp_path), "")
+    file = tmp_path / "file"
+    file.touch()
+    with pytest.raises(UsageError, match="a file, not a folder; name another --store"):
+        study_store(Store(file), "oat")

@@ -239,6 +239,16 @@ MISTAKES = {
     "a statistic that is none": ("statistic: p95", "statistic: p101", ("p101}", "'p101' is no statistic")),
     "a number as statistic": ("statistic: p95", "statistic: 95", ("95}", "95 is no statistic")),
     "a percentile on the wrong side": ("statistic: p5}", "statistic: p95}", ("p95}", "write p5")),
+    "a percentile with two bounds": (
+        "{min: 0 mm, statistic: p5}",
+        "{min: 0 mm, max: 9 mm, statistic: p50}",
+        ("p50}", "p50 has a min and a max, and a failed sample"),
+    ),
+    "a percentile to be small and large": (
+        "{min: 0 mm, statistic: p5}",
+        "{min: 0 mm, statistic: p5}\n  steady_state_error: {min: 0 %, statistic: p95}",
+        ("p95}", "p95 has a min and is an objective, and a failed sample"),
+    ),
     "a statistic of the share": ("{max: 5 %}", "{max: 5 %, statistic: p95}", ("statistic: p95}", "delete it")),
     "no uncertainty": (U + UNSURE.split(U)[1], "", ("statistic: p95}", "there is no `uncertainty`")),
     "no share without it": (U + UNSURE.split(U)[1], "", ("failed_share: {", "failed_share")),

@@ -11,6 +11,7 @@ from browsing import quiet
 from divideropt.analysis import hypervolume
 from divideropt.campaign.companion import run_campaign
 from divideropt.campaign.load import parse_campaign
+from divideropt.models.divider import QUANTITIES
 from divideropt.report import write_report
 from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
 from divideropt.report.data import COMPANION_NOTE, read_report
@@ -96,7 +97,7 @@ def test_it_counts_what_does_not_stand_the_whole_campaign(folder, data):
     assert (cost.known, cost.points, cost.size) == (len(known),) * 3
     assert cost.feasible == (ok & ~above).sum()
     counted = {reason.words: reason.count for reason in cost.reasons}
-    assert counted.get("worst.source pressure above 30 MPa", 0) == above.sum()
+    assert counted.get("worst source pressure above 30 MPa", 0) == above.sum()
     assert sum(counted.values()) == len(known) - cost.feasible
     assert len(reasons_table(data).rows) == len(counted) > 0
     placed = [place for place in cost.placed if place.nominal]
@@ -119,6 +120,10 @@ def test_the_table_has_a_row_for_each_judge(data):
     shown = bests_table(data)
     assert len(shown.rows) == 2 * len(data.cost.bests)
     assert [row.cells[3].text for row in shown.rows[:2]] == ["nominal", "whole campaign"]
+    titles = {heading.words: heading.title for heading in shown.headings}
+    assert titles["steady state error"].startswith("nominal: steady state error of the design as it is")
+    assert titles["steady state error"].endswith("whole campaign: worst steady state error")
+    assert titles["source pressure"] == QUANTITIES["source_pressure"].description  # the same to both
     for row in shown.rows:
         assert len(row.cells) == len(shown.headings)
 

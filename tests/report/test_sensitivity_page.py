@@ -14,8 +14,12 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.campaign.study import Asked, run_study, study_of, study_store
 from divideropt.errors import UsageError
+from divideropt.models import Domain, Parameter
 from divideropt.report import read_study, study_text, write_report, write_study
+from divideropt.report.display import axis_of, labels_of
 from divideropt.report.house_words import house_rows
+from divideropt.report.sensitivity_data import INDICES
+from divideropt.report.sensitivity_figures import interactions
 from divideropt.report.sensitivity_page import render_study
 from divideropt.store import Store
 from sensitivity_models import g_indices, ishigami_indices
@@ -83,7 +87,7 @@ def test_a_study_without_failures_is_drawn(opened: Callable[..., Opened], tmp_pa
     page = opened(render_study(read_study(store)))
     quiet(page)
     assert page.count("#bars .bars .point") == 6
-    assert page.count("#interactions .annotation") >= 3
+    assert page.count("#interactions .textpoint") >= 3
     assert page.count("#convergence .scatterlayer .trace") == 3
     assert "No design failed" in page.page.locator("#failed").inner_text()
     assert page.page.locator("#undefined li").all_inner_texts() == [
@@ -101,7 +105,7 @@ def test_failures_and_treatments_are_told(opened: Callable[..., Opened], tmp_pat
     quiet(page)
     text = page.page.locator("#failed").inner_text()
     assert f"{data.failures.total} of 2048 designs failed: {data.failures.total} unsettled (25 %)" in text
-    assert page.count("#failures .annotation") == 30
+    assert page.count("#failures .textpoint") == 30
     rows = page.page.locator(".treatments tbody td:first-child").all_inner_texts()
     assert rows == ["working", "worst", "working", "simulated", "worst"]
     assert "lost, simulated: it is defined throughout in" in page.page.locator("#undefined").inner_text()
@@ -163,6 +167,23 @@ def test_effects_are_told_in_the_quantitys_unit(tmp_path):
     assert "source pressure [MPa]" in text or "source pressure [GPa]" in text
 
 
+def test_an_objective_without_numbers_says_why(tmp_path):
+    constant = FAILING.replace("{lost: {}}", "{lost: {goal: 1}, kept: {}}").replace("x1: [0, 1]", "x1: [0, 0.2]")
+    for method, count in (("sobol", 2), ("morris", 10)):
+        text = study_text(read_study(studied(constant, tmp_path / method, method, count)))
+        assert "lost: no numbers, since it is defined in no design that counts" in text  # where all of them fail
+        assert "–  –" not in text.partition("House of Quality")[0]
+        assert "the author's" not in text  # whose model this is not
+
+
+def test_a_small_effect_is_not_written_as_0(tmp_path):
+    small = ISHIGAMI.replace("sensitivity_models:Ishigami", "sensitivity_models:SmallIshigami")
+    text = study_text(read_study(studied(small, tmp_path, "morris", 10)))
+    rows = [line.split(maxsplit=1) for line in text.splitlines() if line.startswith("  x")]
+    assert [name for name, _ in rows] == ["x1", "x2", "x3"]
+    assert all("·10⁻¹" in number and " 0.00" not in number for _, number in rows)
+
+
 def test_the_campaigns_report_shows_its_studies(opened: Callable[..., Opened], tmp_path):
     folder = tmp_path / "whole"
     store = Runner(parse_campaign(ISHIGAMI), folder, 1, io.StringIO()).run().store
@@ -176,6 +197,52 @@ def test_the_campaigns_report_shows_its_studies(opened: Callable[..., Opened], t
     assert links == ["sensitivity/sobol/report.html"], "a study without a page is named and not linked"
     assert (folder / links[0]).is_file()
     assert "Morris" in page.page.locator("#sensitivity").inner_text()
+
+
+def _words(table):
+    return table.assign(value="<b>1</b>")
+
+
+def _twice(table):
+    return pd.concat([table, table])
+
+
+def _unknown(table):
+    return table.assign(samples=np.nan)
+
+
+def _nobody(table):
+    return table.assign(quantity=7)
+
+
+@pytest.mark.parametrize("damage", [_words, _twice, _unknown, _nobody])
+def test_a_table_of_indices_that_is_none_is_left_out_of_the_report(damage, tmp_path):
+    folder = tmp_path / "whole"
+    store = Runner(parse_campaign(ISHIGAMI), folder, 1, io.StringIO()).run().store
+    study = studied(ISHIGAMI, folder, "sobol", 32)
+    write_study(study)
+    assert 'id="study-sobol"' in write_report(store).read_text()
+    table = pd.read_parquet(study.folder / INDICES)
+    damage(table).to_parquet(study.folder / INDICES)
+    assert 'id="study-sobol"' not in write_report(store).read_text()
+
+
+def test_labels_are_all_different():
+    """Two of one label are one place of a figure."""
+    names = ("load_1", "load_2")
+    entries = [Parameter(name, "", "P", "a load", 1.0, Domain()) for name in names]
+    assert labels_of([axis_of(entry, [1.0]) for entry in entries]) == ["load 1", "load 2"]
+    entries = [Parameter(name, "", symbol, "", 1.0, Domain()) for name, symbol in (("a_b", "c"), ("a b", "c"))]
+    assert labels_of([axis_of(entry, [1.0]) for entry in entries]) == ["a_b", "a b"]
+    entries = [Parameter(name, "", symbol, "", 1.0, Domain()) for name, symbol in (("a", "α"), ("b", ""))]
+    assert labels_of([axis_of(entry, [1.0]) for entry in entries]) == ["α", "b"]
+
+
+def test_many_pairs_are_drawn_as_one_trace_of_numbers(tmp_path):
+    """As annotations they took minutes where variables are some dozens."""
+    figure = interactions(read_study(studied(G, tmp_path, "sobol", 32)))
+    assert [len(trace.text) for trace in figure.data if trace.type == "scatter"] == [15]
+    assert len(figure.layout.annotations) == 1  # the panel's title
 
 
 def test_an_unfinished_study_says_so(tmp_path):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from browsing import Opened, quiet
 from divideropt.campaign.load import parse_campaign
@@ -97,6 +98,20 @@ def test_responses_are_the_models_own_at_five_values(data):
         assert [flow[-1] for flow in response.curve.flows] == pytest.approx(flows.tolist(), rel=1e-4)
         row = int(np.argmin(np.abs(part.sweep.values - response.value)))
         assert response.settling == pytest.approx(part.sweep.quantities["settling_time"][row], rel=1e-12)
+
+
+def test_responses_are_simulated_on_one_thread_as_the_study_was(study, monkeypatch):
+    respond, seen = Divider.respond, []
+
+    def curious(self, parameters, reading=None):
+        seen.extend(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+        return respond(self, parameters, reading)
+
+    monkeypatch.setattr(Divider, "respond", curious)
+    with threadpool_limits(2, user_api="blas"):
+        again = read_sweeps(study)
+    assert [len(part.responses) for part in again.parts] == [5, 5]
+    assert set(seen) <= {1}
 
 
 def test_a_response_that_ends_badly_says_how_in_the_legend(data):

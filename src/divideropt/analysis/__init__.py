@@ -25,7 +25,7 @@ from divideropt.analysis.sobol import SobolStudy, sobol_study
 from divideropt.analysis.spread import representatives, spread
 from divideropt.analysis.stationary import Convergence, Kkt, converged, convergence, measured, residuals, scales_of
 from divideropt.analysis.summary import Summary, repeatable, summarise
-from divideropt.analysis.sweeps import Effect, Failures, Sweep, Sweeps, effects_of, sweeps_of
+from divideropt.analysis.sweeps import Effect, FailedStretch, Sweep, Sweeps, effects_of, sweeps_of
 from divideropt.analysis.treatments import Treatment, Undefined
 from divideropt.analysis.verification import Tally, Verified, marked, tally, worth_verifying
 
@@ -37,7 +37,7 @@ __all__ = [
     "Convergence",
     "Criterion",
     "Effect",
-    "Failures",
+    "FailedStretch",
     "Goals",
     "House",
     "Indicator",

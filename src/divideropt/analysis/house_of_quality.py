@@ -94,19 +94,24 @@ def house_of_quality(indices: pd.DataFrame, problem: Problem, *, thesis: bool) -
     Args:
         indices: Of a Sobol study, as `SobolStudy.indices`.
         problem: What was studied.
-        thesis: Whether the model is the author's valve: his criteria, beside his numbers.
+        thesis: Whether the model is the author's valve, so that his numbers are beside.
 
     Returns:
-        The house; without `thesis` its rows are the objectives and constraints.
+        The house: his criteria and the objectives that are none of them, or without `thesis` the objectives and
+        constraints.
     """
     totals = indices[(indices["kind"] == "ST") & indices["treatment"].isin(_FOR_HOUSE)]
     totals = totals[totals["samples"] == totals["samples"].max()]
     names = problem.space.names
-    if thesis:
-        rows = [_thesis_row(row, totals, problem) for row in THESIS_HOUSE]
-    else:
-        asked = [o.quantity.name for o in problem.objectives] + [c.quantity.name for c in problem.constraints]
-        rows = [_row(name.replace("_", " "), name, totals, problem) for name in dict.fromkeys(asked)]
+    rows = [_thesis_row(row, totals, problem) for row in THESIS_HOUSE] if thesis else []
+    asked = [o.quantity.name for o in problem.objectives]
+    asked += [] if thesis else [c.quantity.name for c in problem.constraints]
+    there = {row.quantity for row in rows}
+    rows += [
+        _row(name.replace("_", " ").replace(".", " "), name, totals, problem)
+        for name in dict.fromkeys(asked)
+        if name not in there
+    ]
     return House(names, tuple(rows), _importance(rows), _author_importance(rows, names) if thesis else None)
 
 
@@ -122,8 +127,9 @@ def scores(totals: Sequence[float], low: Sequence[float]) -> tuple[int, ...]:
 def _row(words: str, quantity: str, totals: pd.DataFrame, problem: Problem) -> Criterion:
     found = totals[totals["quantity"] == quantity].set_index("variable")
     names = problem.space.names
-    known = set(names) <= set(found.index)
-    given = scores(*(found.loc[list(names), column].tolist() for column in ("value", "low"))) if known else None
+    columns = [found.reindex(list(names))[column].tolist() for column in ("value", "low")]
+    known = all(math.isfinite(number) for column in columns for number in column)  # an interval may not be defined
+    given = scores(*columns) if known else None
     weights = {o.quantity.name: o.weight for o in problem.objectives}
     demanded = {c.quantity.name for c in problem.constraints}
     return Criterion(words, quantity, weights.get(quantity), quantity not in weights and quantity in demanded, given)

@@ -1,12 +1,12 @@
 """Morris's elementary effects of every quantity of a study, with what was done about its failed designs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from divideropt.analysis.failures import Failures, failures_of, working
-from divideropt.analysis.pick_freeze import NORMAL_95
+from divideropt.analysis.pick_freeze import NORMAL_95, size_of
 from divideropt.analysis.sobol import COLUMNS
 from divideropt.analysis.treatments import Treated, Treatment, Undefined, quantity_columns, treated
 from divideropt.models.base import FloatArray
@@ -72,11 +72,13 @@ def morris_study(evaluations: Evaluations, problem: Problem) -> MorrisStudy:
                 reason = "it is constant" if item.kept.any() else "it is defined in no design that counts"
                 undefined.append(Undefined(name, item.treatment, reason))
                 continue
-            found = _effects(item, ways)
+            size = size_of(item.values[item.kept])
+            scaled = replace(item, values=item.values / size)
+            found = _effects(scaled, ways)
             if item.kept.all():
-                summary = _by_salib(evaluations.designs, item.values, problem.space, ways)
+                summary = size * _by_salib(evaluations.designs, scaled.values, problem.space, ways)
             else:
-                summary = np.array([_summary(column[np.isfinite(column)]) for column in found.T])
+                summary = size * np.array([_summary(column[np.isfinite(column)]) for column in found.T])
             rows.append(_rows(name, item.treatment, summary, np.isfinite(found).mean(axis=0), problem, trajectories))
     table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=list(COLUMNS))
     failures = failures_of(evaluations, problem.space)

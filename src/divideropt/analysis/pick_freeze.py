@@ -8,6 +8,7 @@ them, weighted by how often a block was drawn: one product of matrices. SALib dr
 value for every resample.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,6 +27,9 @@ NORMAL_95 = 1.959963984540054
 
 CHUNK = 8192
 """Blocks whose weights are floating-point numbers at a time, so that a long sample's do not fill the memory."""
+
+LEAST_EXPONENT = -1022
+"""Of the smallest power of two that a float holds with all its digits."""
 
 Bools = NDArray[np.bool_]
 Combine = Callable[[FloatArray], FloatArray]
@@ -118,11 +122,16 @@ def whole(values: FloatArray, blocks: Blocks) -> Estimate:
         blocks: The layout.
 
     Returns:
-        SALib's indices: first order and total by Saltelli et al. (2010), second order by Saltelli (2002).
+        SALib's indices: first order and total by Saltelli et al. (2010), second order by Saltelli (2002); NaN where
+        the designs A and B, whose variance divides them, all have the same value.
     """
     from SALib.analyze.sobol import analyze  # noqa: PLC0415 (slow to import)
 
+    values = values / size_of(values)
     scaled = (values - values.mean()) / values.std()
+    if np.ptp(scaled[:, [0, blocks.b]]) <= np.finfo(float).eps:  # SALib would say 0
+        nothing = np.full(len(blocks.keys), np.nan)
+        return Estimate(nothing, nothing, np.ones(len(nothing)))
     d = blocks.variables
     description = {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
     found = analyze(description, scaled.ravel(), calc_second_order=blocks.second_order, num_resamples=2, seed=1)
@@ -151,6 +160,7 @@ def by_pairs(values: FloatArray, kept: Bools, blocks: Blocks, least: int) -> Est
         The indices, NaN where fewer pairs are kept, or all of them are equal.
     """
     groups = _pair_groups(blocks)
+    values = values / size_of(values[kept])
     centre, size = values[kept].mean(), values[kept].std()
     filled = np.where(kept, (values - centre) / size, 0.0)
     terms = np.concatenate([_pair_terms(filled, kept, group) for group in groups], axis=1)
@@ -172,6 +182,16 @@ def by_pairs(values: FloatArray, kept: Bools, blocks: Blocks, least: int) -> Est
     return Estimate(np.where(enough, indices, np.nan), _half_widths(terms, combine), used)
 
 
+def size_of(values: FloatArray) -> float:
+    """The power of two by which values are divided so that their squares are numbers: no digit is lost or won.
+
+    Args:
+        values: Finite, of any shape, at least one.
+    """
+    largest = float(np.abs(values).max())
+    return math.ldexp(1.0, max(math.frexp(largest)[1] - 1, LEAST_EXPONENT)) if largest > 0.0 else 1.0
+
+
 def _saltelli(y: FloatArray, blocks: Blocks) -> tuple[FloatArray, Combine]:
     """The terms of SALib's estimators, shape (n, c), and what makes indices of their means."""
     d, a, b = blocks.variables, y[:, 0], y[:, blocks.b]
@@ -186,7 +206,8 @@ def _saltelli(y: FloatArray, blocks: Blocks) -> tuple[FloatArray, Combine]:
 
     def combine(means: FloatArray) -> FloatArray:
         variance = (means[:, 1] - means[:, 0] ** 2)[:, None]
-        shares = means[:, 2:] / variance
+        with np.errstate(divide="ignore", invalid="ignore"):  # a resample in which nothing varies has no index
+            shares = means[:, 2:] / variance
         first, total, joint = shares[:, :d], shares[:, d : 2 * d], shares[:, 2 * d :]
         second = [joint[:, k] - first[:, i] - first[:, j] for k, (i, j) in enumerate(blocks.pairs)]
         return np.column_stack([first, total, *second])

@@ -114,6 +114,8 @@ def _estimate(item: Treated, layout: Blocks) -> Estimate | str:
     if np.ptp(values[full]) == 0.0:
         return "it is constant"
     found = whole(values[full], layout)
+    if not np.isfinite(found.values).any():
+        return "it is constant in the designs whose variance is shared out"
     return Estimate(found.values, found.half, np.full(len(found.values), full.mean()))
 
 

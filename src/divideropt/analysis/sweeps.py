@@ -14,7 +14,7 @@ from divideropt.store.schema import DEVIATION_FLOOR
 
 
 @dataclass(frozen=True)
-class Failures:
+class FailedStretch:
     """Designs that failed one after the other.
 
     Attributes:
@@ -67,10 +67,10 @@ class Sweep:
         """Return a quantity with NaN also where the outcome is not ok, shape (n,)."""
         return np.where(self.ok, self.quantities[quantity], np.nan)
 
-    def failures(self) -> tuple[Failures, ...]:
+    def failures(self) -> tuple[FailedStretch, ...]:
         """Say where designs failed: each unbroken stretch."""
         runs = groupby(range(len(self.values)), key=lambda row: self.verdicts[row].ok)
-        return tuple(self._failures(list(rows)) for ok, rows in runs if not ok)
+        return tuple(self._stretch(list(rows)) for ok, rows in runs if not ok)
 
     def crossings(self, quantity: str) -> tuple[float, ...]:
         """Find where a quantity crosses zero, by a straight line between two neighbours that are both ok.
@@ -89,11 +89,11 @@ class Sweep:
                     found.append(float(self.values[i + 1] if j > i + 1 else between))
         return tuple(found)
 
-    def _failures(self, rows: Sequence[int]) -> Failures:
+    def _stretch(self, rows: Sequence[int]) -> FailedStretch:
         verdicts = [self.verdicts[i] for i in rows]
         outcomes = Counter(str(verdict.outcome) for verdict in verdicts)
         first, last = float(self.values[rows[0]]), float(self.values[rows[-1]])
-        return Failures(first, last, dict(outcomes.most_common()), verdicts[0].text)
+        return FailedStretch(first, last, dict(outcomes.most_common()), verdicts[0].text)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from divideropt.api.given import Given, campaign_given
 from divideropt.campaign import compare as comparing
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, plan_runs
-from divideropt.campaign.study import Asked, run_study, study_of, study_store
+from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
 from divideropt.report import comparison_data, comparison_table, comparison_text, read_study, study_text, write_study
 from divideropt.report.comparison_figure import comparison_figure
 from divideropt.store import Store, TableSchema
@@ -114,14 +114,15 @@ def sensitivity(
     Raises:
         UsageError: A parameter, a range or a number of samples is wrong.
         FileMistakes: Everything wrong in the campaign, with line and column.
-        StoreError: The study's store is another's, or damaged.
+        StoreError: The store is another campaign's, or damaged.
         IncompleteRunsError: The run was given up.
         InterruptedRunError: It was interrupted; the same call goes on.
     """
     asked = campaign_given(campaign)
     wanted = study_of(asked, Asked(method, tuple(parameters), samples, not second_order))
     folder = Path("results") / asked.name if store is None else Path(store)
-    kept = study_store(Store(folder), study or method)
+    check_home(Store(folder), asked)
+    kept = study_store(Store(folder), method if study is None else study)
     stream = sys.stderr if words is None else words
     run_study(wanted, kept, workers, stream, "divideropt.sensitivity, as before", fresh=fresh)
     found = None if method == "oat" else read_study(kept)

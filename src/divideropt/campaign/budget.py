@@ -10,6 +10,7 @@ from divideropt.campaign.simulate import chosen_design, crashed
 from divideropt.models.base import Verdict
 from divideropt.models.divider.error_budget import REST, TOTAL, error_budget
 from divideropt.models.divider.scenarios import BASE
+from divideropt.problem import one_thread
 
 _COLUMNS = ["cause", "share", "error_without"]
 
@@ -32,7 +33,7 @@ def budget_table(campaign: Campaign, settings: Sequence[str], scenario: str = BA
     """
     model, parameters = chosen_design(campaign, settings, scenario)
     try:
-        with np.errstate(all="ignore"):  # a failed design says so by its outcome
+        with one_thread(), np.errstate(all="ignore"):  # a failed design says so by its outcome
             budget = error_budget(model, parameters)
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
         return pd.DataFrame(columns=_COLUMNS), crashed(error)

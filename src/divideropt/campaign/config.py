@@ -22,7 +22,7 @@ from divideropt.campaign.nominal import nominal_rules
 from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.ranges import read_range
-from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sections import Section, mistake, section_of, show, together
 from divideropt.campaign.sensitivity import SensitivityConfig
 from divideropt.campaign.termination import termination_rules
 from divideropt.campaign.uncertainty import (
@@ -281,8 +281,8 @@ class Campaign(Section):
     @classmethod
     def rules(cls, raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
         """Say what does not fit together between sections."""
-        fixed = _section(_section(raw, "model"), "set")
-        varying = () if is_study(_section(raw, "strategies")) else _section(raw, "variables")
+        fixed = section_of(section_of(raw, "model"), "set")
+        varying = () if is_study(section_of(raw, "strategies")) else section_of(raw, "variables")
         for name in varying:
             if name in fixed:
                 sentence = f"{name} is in model.set too, and cannot both vary and be fixed; delete one of the two"
@@ -292,8 +292,8 @@ class Campaign(Section):
         yield from uncertainty_rules(raw)
         yield from nominal_rules(raw)
         yield from termination_rules(raw)
-        aggregating = ", ".join(name for name in _section(raw, "strategies") if needs_goals(name))
-        for name, objective in _section(raw, "objectives").items():
+        aggregating = ", ".join(name for name in section_of(raw, "strategies") if needs_goals(name))
+        for name, objective in section_of(raw, "objectives").items():
             given = objective.get("goal") if isinstance(objective, Mapping) else None
             if aggregating and given is None:
                 sentence = f"{name} has no goal, by which {aggregating} weighs the objectives; give one, {{goal: …}}"
@@ -301,15 +301,15 @@ class Campaign(Section):
 
 
 def _scenario_set_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
-    """Say which variables a scenario sets, so that they would vary in some of the simulations only."""
-    scenarios, variables = _section(_section(raw, "model"), "scenarios"), _section(raw, "variables")
+    """Say what varies, in the campaign or in a study of it, and is set by a scenario: it would vary in the others."""
+    scenarios, variables = section_of(section_of(raw, "model"), "scenarios"), section_of(raw, "variables")
+    studied = section_of(section_of(raw, "sensitivity"), "parameters")
     for scenario in scenarios:
-        for name in _section(_section(scenarios, scenario), "set"):
+        for name in section_of(section_of(scenarios, scenario), "set"):
+            place = ("model", "scenarios", scenario, "set", name)
             if name in variables:
                 sentence = f"{name} is a variable, which no scenario can set; delete it here, or from `variables`"
-                yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
-
-
-def _section(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    section = raw.get(name)
-    return section if isinstance(section, Mapping) else {}
+                yield mistake(place, sentence, at_key=True)
+            elif name in studied:
+                sentence = f"{name} is studied, which no scenario can set; delete it here, or from `sensitivity`"
+                yield mistake(place, sentence, at_key=True)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic_core import InitErrorDetails
 
-from divideropt.campaign.sections import mistake
+from divideropt.campaign.sections import mistake, section_of
 from divideropt.models.uncertain import FAILED_SHARE
 
 if TYPE_CHECKING:
@@ -71,9 +71,9 @@ def nominal_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say why a campaign, as written, that asks for a companion has none."""
     if raw.get("nominal") is not True:
         return
-    others = tuple(_mapping(_mapping(raw, "model"), "scenarios"))
+    others = tuple(section_of(section_of(raw, "model"), "scenarios"))
     others = others if raw.get("uncertainty") is None else (*others, FAILED_SHARE.name)
-    objectives, constraints = _mapping(raw, "objectives"), _mapping(raw, "constraints")
+    objectives, constraints = section_of(raw, "objectives"), section_of(raw, "constraints")
     asked = [
         (str(name), section, entry)
         for section, entries in (("objectives", objectives), ("constraints", constraints))
@@ -108,8 +108,3 @@ def _gathers(entry: object, section: str) -> bool:
 def _is_named(quantity: str, others: tuple[str, ...]) -> bool:
     """Whether a quantity is of a named scenario or of the samples, not of the base scenario."""
     return quantity.partition(".")[0] in others
-
-
-def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    section = raw.get(name)
-    return section if isinstance(section, Mapping) else {}

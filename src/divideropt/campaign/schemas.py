@@ -7,7 +7,7 @@ from divideropt.campaign.fields import POSITIVE, Measure, measure_of
 from divideropt.models import Parameter, Quantity
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import QUANTITIES
-from divideropt.models.divider.scenarios import BASE
+from divideropt.models.divider.scenarios import BASE, GATHERED
 from divideropt.models.divider.tolerances import STATE_UNITS
 from divideropt.models.statistic import KINDS
 from divideropt.models.uncertain import FAILED_SHARE
@@ -130,7 +130,7 @@ def _given(name: str) -> Schema:
 EVERY = "all"
 """Stands for every scenario of a campaign, under `worst_of`."""
 
-RESERVED_NAMES = ("worst", "least", EVERY)
+RESERVED_NAMES = (*GATHERED, EVERY)
 """What no scenario is called: what a column's name may begin with already, and what stands for every scenario."""
 
 

@@ -47,6 +47,12 @@ class Section(BaseModel):
         return made
 
 
+def section_of(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Return a section as written; empty where it is not there, or no mapping, which has its own mistake."""
+    section = raw.get(name)
+    return section if isinstance(section, Mapping) else {}
+
+
 def mistake(loc: Loc, sentence: str, *, at_key: bool = False) -> InitErrorDetails:
     """Word one mistake.
 

@@ -18,6 +18,7 @@ from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Response
 from divideropt.models.divider.scenarios import BASE
+from divideropt.problem import one_thread
 from divideropt.units import parse_measure
 
 POINTS_PER_STEP = 16
@@ -77,7 +78,7 @@ def simulate(campaign: Campaign, settings: Sequence[str], scenario: str = BASE) 
     """
     model, parameters = chosen_design(campaign, settings, scenario)
     try:
-        with np.errstate(all="ignore"):  # a failed design says so by its outcome
+        with one_thread(), np.errstate(all="ignore"):  # a failed design says so by its outcome
             response = model.respond(parameters)
             row, verdict = measure(response)
             table = _table(response)

@@ -9,17 +9,20 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO, cast
 
-from divideropt.campaign.config import Campaign, OptimalityConfig, VerificationConfig
+from pydantic import ValidationError
+
+from divideropt.campaign.config import Campaign, OptimalityConfig
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.extend import PROBLEM, differences
 from divideropt.campaign.fields import measure_of
-from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plans import StrategyPlan
 from divideropt.campaign.ranges import read_range
 from divideropt.campaign.runner import Runner
-from divideropt.campaign.sections import unknown
+from divideropt.campaign.sections import relay, unknown
 from divideropt.campaign.sensitivity import SensitivityConfig
-from divideropt.errors import IncompleteRunsError, UsageError
+from divideropt.errors import IncompleteRunsError, StoreError, UsageError
 from divideropt.models import Parameter
 from divideropt.models.divider.study import THESIS_RANGES
 from divideropt.models.uncertain import FAILED_SHARE
@@ -49,14 +52,33 @@ def study_store(campaign_store: Store, name: str) -> Store:
     """Return the store of a study, there or not.
 
     Raises:
-        UsageError: The name cannot be a folder's.
+        UsageError: The name cannot be a folder's, or the campaign's folder is a file.
         StoreError: A file is where a folder should be.
     """
     if not _NAME.fullmatch(name):
         raise UsageError(
             f"--study {name!r} cannot name a folder; use 1 to 64 of A-Z, a-z, 0-9, - and _, a letter or digit first"
         )
+    if campaign_store.folder.exists() and not campaign_store.folder.is_dir():
+        raise UsageError(f"{campaign_store.folder}: a file, not a folder; name another --store")
     return campaign_store.study(name)
+
+
+def check_home(campaign_store: Store, campaign: Campaign) -> None:
+    """Check that a study is not put into the store of another campaign, nor into a damaged one.
+
+    Raises:
+        StoreError: There is a store, and it is.
+    """
+    if not campaign_store.exists:
+        return
+    found = list(differences(stored_campaign(campaign_store), campaign, ("name", *PROBLEM)))
+    if found:
+        raise StoreError(
+            f"{campaign_store.folder}: this store belongs to another campaign:\n  "
+            + "\n  ".join(found)
+            + "\nName another folder for the study (--store)."
+        )
 
 
 def study_of(campaign: Campaign, asked: Asked) -> Campaign:
@@ -81,7 +103,7 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
             "variables": _ranges(campaign, asked),
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
             "sensitivity": SensitivityConfig(),
-            "verification": VerificationConfig(sample=0, tolerance=f"{campaign.verification.tolerance} %"),  # type: ignore[arg-type]  # as a file has it
+            "verification": campaign.verification.model_copy(update={"sample": 0}),
             "optimality": OptimalityConfig(points=0),
         }
     )
@@ -138,9 +160,9 @@ def _options(config: SensitivityConfig, asked: Asked) -> Any:
     name = {"oat": "points", "morris": "trajectories", "sobol": "samples"}[asked.method]
     try:
         return type(options)(**{**dataclasses.asdict(options), name: asked.count})
-    except ValueError as error:
-        reason = cast(Any, error).errors()[0]["msg"].removeprefix("Value error, ")
-        raise UsageError(f"--samples {asked.count}: {reason[0].lower()}{reason[1:]}") from None
+    except ValidationError as error:
+        (found, *_) = relay(error)
+        raise UsageError(f"--samples {asked.count}: {cast(Any, found['type']).message()}") from None
 
 
 def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float]]:
@@ -150,26 +172,44 @@ def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float
         return usual
     table = campaign.model.tables().parameters or {}
     known = {**campaign.variables, **_usual(campaign, "oat"), **usual}
-    return dict(_asked_range(text, table, known) for text in asked.parameters)
+    found: dict[str, tuple[float, float]] = {}
+    for text in asked.parameters:
+        name, ends = _asked_range(text, table, known, _set_by(campaign))
+        if name in found:
+            raise UsageError(f"--parameter {text}: {name} is named a second time; leave one of the two away")
+        found[name] = ends
+    return found
 
 
 def _usual(campaign: Campaign, method: str) -> dict[str, tuple[float, float]]:
     model = campaign.model
     if method != "oat" or not isinstance(model, DividerConfig):
         return dict(campaign.variables)
-    theirs = {name for scenario in model.scenarios.values() for name in scenario.set}
+    theirs = _set_by(campaign)
     return {name: ends for name, ends in THESIS_RANGES.items() if name not in theirs}
 
 
+def _set_by(campaign: Campaign) -> dict[str, str]:
+    """The parameters that scenarios set, each with the first that does."""
+    model = campaign.model
+    changes = model.changes() if isinstance(model, DividerConfig) else {}
+    return {name: scenario for scenario in reversed(changes) for name in changes[scenario]}
+
+
 def _asked_range(
-    text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]]
+    text: str, table: Mapping[str, Parameter], known: Mapping[str, tuple[float, float]], set_by: Mapping[str, str]
 ) -> tuple[str, tuple[float, float]]:
     """Read `NAME`, whose range is known, or `NAME=LOWER..UPPER`."""
-    name, _, written = text.partition("=")
+    name, equals, written = text.partition("=")
     name = name.strip()
     if name not in table:
         raise UsageError(f"--parameter {text}: {unknown('parameter', name, table)}")
-    if not written:
+    if name in set_by:
+        raise UsageError(
+            f"--parameter {name}: scenario {set_by[name]} sets it, where a study could not vary it; study a campaign "
+            "whose scenarios do not"
+        )
+    if not equals:
         if name not in known:
             example = measure_of(table[name]).write(table[name].default)
             raise UsageError(

@@ -9,7 +9,7 @@ from pydantic_core import InitErrorDetails
 from divideropt.campaign import schemas
 from divideropt.campaign.distributions import read_source, source_schema, written_source
 from divideropt.campaign.fields import Tables, by_name
-from divideropt.campaign.sections import Section, mistake, show, together
+from divideropt.campaign.sections import Section, mistake, section_of, show, together
 from divideropt.campaign.worst_case import gathered_name
 from divideropt.models import Model, Parameter, Quantity
 from divideropt.models.divider.parameters import PARAMETERS
@@ -91,7 +91,7 @@ def uncertainty_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say what is wrong with every `statistic`, and with what scenarios set, judged on the campaign as written."""
     uncertainty = raw.get("uncertainty")
     for section in ("objectives", "constraints"):
-        for name, entry in _mapping(raw, section).items():
+        for name, entry in section_of(raw, section).items():
             if not isinstance(entry, Mapping) or entry.get("statistic") is None:
                 continue
             where = (section, name, "statistic")
@@ -101,11 +101,13 @@ def uncertainty_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
             elif name == FAILED_SHARE.name:
                 yield mistake(where, f"{name} is of all samples together; delete it", at_key=True)
             elif is_kind(entry["statistic"]):
-                yield from _side_rules((*where[:2], "statistic"), entry)
-    uncertain = _mapping(_mapping(raw, "uncertainty"), "parameters")
-    scenarios = _mapping(_mapping(raw, "model"), "scenarios")
+                yield from _side_rules(where, entry)
+                if section == "constraints":
+                    yield from _both_ways(where, entry, section_of(raw, "objectives").get(name))
+    uncertain = section_of(section_of(raw, "uncertainty"), "parameters")
+    scenarios = section_of(section_of(raw, "model"), "scenarios")
     for scenario in scenarios:
-        for name in _mapping(_mapping(scenarios, scenario), "set"):
+        for name in section_of(section_of(scenarios, scenario), "set"):
             if name in uncertain:
                 sentence = f"{name} is uncertain, which no scenario can set; delete it here, or from `uncertainty`"
                 yield mistake(("model", "scenarios", scenario, "set", name), sentence, at_key=True)
@@ -155,6 +157,25 @@ def _side_rules(where: tuple[str, ...], entry: Mapping[str, Any]) -> Iterator[In
             yield mistake(where, sentence)
 
 
+def _both_ways(where: tuple[str, ...], bound: Mapping[str, Any], objective: object) -> Iterator[InitErrorDetails]:
+    """Refuse one percentile of one quantity under a lower bound and as something to be small.
+
+    It is one column, in which a failed sample would have to be below and above all others. Over several scenarios
+    they are two, the least and the worst.
+    """
+    kind = bound["statistic"]
+    if percent_of(kind) is None or bound.get("min") is None or bound.get("worst_of"):
+        return
+    minimised = (
+        isinstance(objective, Mapping) and objective.get("statistic") == kind and not objective.get("worst_of")
+    )
+    if bound.get("max") is not None or minimised:
+        bounded = bound.get("max") is not None
+        remedy = "leave one of the two out" if bounded else "take another percentile in one of the two"
+        sentence = f"{kind} has a min and {'a max' if bounded else 'is an objective'}"
+        yield mistake(where, f"{sentence}, and a failed sample cannot be both too small and too large; {remedy}")
+
+
 def _objections(parameter: Parameter, source: Source, own: tuple[float, float], *, varies: bool) -> Iterator[str]:
     """Say why a parameter whose own value is within two ends cannot be uncertain so."""
     drawn = source.distribution
@@ -182,8 +203,3 @@ def _taken_names(quantities: Mapping[str, Quantity]) -> Iterator[InitErrorDetail
             )
             yield mistake((), sentence, at_key=True)
             return
-
-
-def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    section = raw.get(name)
-    return section if isinstance(section, Mapping) else {}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic_core import InitErrorDetails
 
 from divideropt.campaign.schemas import EVERY
-from divideropt.campaign.sections import Loc, mistake, show, unknown
+from divideropt.campaign.sections import Loc, mistake, section_of, show, unknown
 from divideropt.models.divider.quantities import QUANTITIES
 from divideropt.models.divider.scenarios import BASE, Worst
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 def worst_case_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say what is wrong with every `worst_of`, judged on the campaign as written."""
-    model = _mapping(raw, "model")
-    scenarios = [BASE, *_mapping(model, "scenarios")]
+    model = section_of(raw, "model")
+    scenarios = [BASE, *section_of(model, "scenarios")]
     given: dict[str, set[str]] = {}
     for section in ("objectives", "constraints"):
-        for name, entry in _mapping(raw, section).items():
+        for name, entry in section_of(raw, section).items():
             asked = entry.get("worst_of") if isinstance(entry, Mapping) else None
             asked = scenarios if asked == EVERY else asked
             if not isinstance(asked, list | tuple) or not asked or not all(isinstance(n, str) for n in asked):
@@ -78,8 +78,3 @@ def gathered_name(quantity: str, scenarios: Sequence[str], *, least: bool = Fals
 
 def _sorted(scenarios: Sequence[str], order: Sequence[str]) -> tuple[str, ...]:
     return tuple(sorted(scenarios, key=order.index))
-
-
-def _mapping(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    section = raw.get(name)
-    return section if isinstance(section, Mapping) else {}

@@ -79,7 +79,7 @@ def sensitivity(
     sobol   the share of each, alone and with others, in the variance of every quantity
     """  # noqa: D301 (\b is click's)
     asked = load(campaign)
-    from divideropt.campaign.study import Asked, run_study, study_of, study_store
+    from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
     from divideropt.report import read_study, study_text, write_study
     from divideropt.store import Store
 
@@ -90,7 +90,8 @@ def sensitivity(
     options += ["--no-second-order"] if alone else []
     chosen = [word for name in parameters for word in ("--parameter", name)]
     again = shlex.join(["divideropt", "sensitivity", str(campaign), *options, *chosen])
-    kept = study_store(Store(folder), study or method)
+    check_home(Store(folder), asked)
+    kept = study_store(Store(folder), method if study is None else study)
     run_study(wanted, kept, workers, sys.stderr, again, fresh=fresh)
     found = None if method == "oat" else read_study(kept)
     if found is not None:

@@ -1,5 +1,6 @@
 """Uncertain parameters around any model: each design in samples of them too, and statistics over these."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -213,6 +214,15 @@ def under_uncertainty(
     made = VerifiableUncertain if isinstance(model, Verifiable) else Uncertain
     ranked = tuple(sorted(sources, key=lambda source: order.index(source.parameter)))
     return made(model, ranked, samples, seed, tuple(needed), tuple(shown))
+
+
+def fails_in_samples(verdict: Verdict) -> bool:
+    """Whether a design fails in samples of uncertain parameters only, and not as it is."""
+    return _SAMPLED.match(verdict.text) is not None
+
+
+_SAMPLED = re.compile(r"in [0-9]+ of [0-9]+ samples: ", re.ASCII)
+"""How `_judged` says so."""
 
 
 def _judged(found: Sequence[Verdict], lost: bool) -> Verdict:

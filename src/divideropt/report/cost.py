@@ -1,6 +1,5 @@
 """What robustness costs: a campaign's front and its companion's, each judged by both problems."""
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,8 @@ from divideropt.campaign.beside import Side, both_sides
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.plan import reference_of
 from divideropt.models.base import FloatArray, Verdict
+from divideropt.models.divider.scenarios import failed_scenario
+from divideropt.models.uncertain import fails_in_samples
 from divideropt.problem import AGGREGATES, Problem
 from divideropt.report.display import axis_of
 from divideropt.report.scenarios import DesignUnder, read_scenarios
@@ -20,9 +21,6 @@ from divideropt.store import Store
 
 GOALS = "goal_attainment"
 """In what a design is the best by max λ."""
-
-_SAMPLES = re.compile(r"in \d+ of \d+ samples: ", re.ASCII)
-_SCENARIO = re.compile(r"\bin scenario (\w+): ", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -249,8 +247,9 @@ def _objections(judged: _Judged, row: int) -> Iterator[tuple[str, str]]:
         return
     verdict = judged.verdicts[row]
     if not verdict.ok:
-        samples, scenario = _SAMPLES.match(verdict.text), _SCENARIO.search(verdict.text)
-        where = (" in samples" if samples else "") + (f" in scenario {scenario[1]}" if scenario else "")
+        scenario = failed_scenario(verdict)
+        where = " in samples" if fails_in_samples(verdict) else ""
+        where += f" in scenario {scenario}" if scenario else ""
         yield f"{verdict.outcome}{where}", verdict.text
     elif np.isnan(judged.values[row]).any():
         yield "an objective is not defined", verdict.text

@@ -2,7 +2,7 @@
 
 from divideropt.report.cost import Best, Reading
 from divideropt.report.data import ReportData
-from divideropt.report.display import number
+from divideropt.report.display import Axis, number
 from divideropt.report.tables import Cell, Heading, Row, Table
 
 ALONE, WHOLE = "nominal", "whole campaign"
@@ -20,7 +20,7 @@ def bests_table(data: ReportData) -> Table:
         headings.append(Heading("max λ", title="goal attainment (3.24); below 0 every goal is met"))
     for name, facts in zip(data.cost.objectives, data.objectives, strict=True):
         detail = " ".join(part for part in (facts.axis.symbol, facts.axis.bracket) if part)
-        headings.append(Heading(name.replace("_", " "), detail, facts.axis.description))
+        headings.append(Heading(name.replace("_", " "), detail, _judged_words(name.replace("_", " "), facts.axis)))
     headings.append(Heading("outcome", numeric=False))
     rows = []
     for best in data.cost.bests:
@@ -52,6 +52,13 @@ def volumes_table(data: ReportData) -> Table:
         for name, values in zip(("nominal front", "robust front"), data.cost.volumes, strict=True)
     )
     return Table(headings, tuple(rows))
+
+
+def _judged_words(words: str, axis: Axis) -> str:
+    """Say what a column of objectives holds, where the judges have different quantities there."""
+    if axis.words == words:
+        return axis.description
+    return f"{ALONE}: {words} of the design as it is, in the base scenario; {WHOLE}: {axis.words}"
 
 
 def _readings(best: Best) -> dict[str, Reading]:

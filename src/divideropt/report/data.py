@@ -47,7 +47,19 @@ MOST_DRAWN = 4000
 MOST_ROWS = 1000
 """Designs of the front in the page's table."""
 
-LIBRARIES = ("divideropt", "numpy", "scipy", "numba", "pymoo", "moocore", "pandas", "pyarrow", "plotly", "jinja2")
+LIBRARIES = (
+    "divideropt",
+    "numpy",
+    "scipy",
+    "numba",
+    "pymoo",
+    "moocore",
+    "pandas",
+    "pyarrow",
+    "SALib",
+    "plotly",
+    "jinja2",
+)
 """Whose versions the report names: what computes, stores and draws."""
 
 COMPANION_NOTE = (

@@ -2,13 +2,14 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.divider.scenarios import GATHERED
 from divideropt.models.statistic import parted
 from divideropt.models.statistic import words_of as statistic_words
 
@@ -111,12 +112,19 @@ def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
 
 
 def _words_of(name: str) -> str:
-    """Word a column's name; `p95.settling_time` is the `95th percentile of settling time`."""
+    """Word a column's name: the `95th percentile of settling time`, the `worst settling time`."""
     statistic = parted(name)
     if statistic is None:
-        return name.replace("_", " ")
+        gathered, _, quantity = name.partition(".")
+        return (f"{gathered} {quantity}" if gathered in GATHERED else name).replace("_", " ")
     kind, quantity = statistic
     return f"{statistic_words(kind)} of {_words_of(quantity)}"
+
+
+def labels_of(axes: Sequence[Axis]) -> list[str]:
+    """Short labels, all different: a figure puts two of one label in one place. Symbols, else words, else names."""
+    symbols, words = [axis.symbol or axis.words for axis in axes], [axis.words for axis in axes]
+    return next((found for found in (symbols, words) if len(set(found)) == len(axes)), [axis.name for axis in axes])
 
 
 def shown_as(unit: str, values: Iterable[float]) -> Shown:

@@ -8,12 +8,12 @@ import numpy as np
 from divideropt.analysis import spread
 from divideropt.campaign.plan import dividers
 from divideropt.models.base import FloatArray
-from divideropt.models.divider import PARAMETER_SETS, parameter_set
+from divideropt.models.divider import PARAMETER_SETS, Divider, parameter_set
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.response import Phase, Response
 from divideropt.models.divider.scenarios import BASE
 from divideropt.ode import SolverStatus
-from divideropt.problem import Problem
+from divideropt.problem import Problem, one_thread
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
 from divideropt.report.sampling import thin
@@ -91,21 +91,8 @@ def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Des
     model = dividers(problem.model).get(BASE)
     if model is None:
         return None
-    sets, notes = [], []
-    for name in PARAMETER_SETS:
-        response = model.respond(parameter_set(name))
-        verdict = measure(response)[1]
-        curve = step_response(name, response)
-        if curve is not None:
-            sets.append(curve)
-        if not verdict.ok:
-            shown = "as far as it goes" if curve is not None else "so it is not drawn"
-            notes.append(f"{name} under this scenario ends {verdict.outcome} ({verdict.text}); {shown}.")
-    curves = [(d, step_response(d.design_id, model.respond(_parameters(problem, d)))) for d in _chosen(front, best)]
-    failed = [design.design_id for design, curve in curves if curve is None]
-    if failed:
-        notes.append(f"These designs did not complete when simulated again: {', '.join(failed)}.")
-    return Responses(tuple(sets), tuple(c for _, c in curves if c is not None), tuple(notes))
+    with one_thread():  # as the runs were simulated, so that a response ends as its design did
+        return _simulated(model, problem, _chosen(front, best))
 
 
 def step_response(
@@ -138,6 +125,24 @@ def step_response(
         (_flows(flows[:, 0]), _flows(flows[:, 1])),
         rounded(_busy(*after) * _MS),
     )
+
+
+def _simulated(model: Divider, problem: Problem, designs: Sequence[Design]) -> Responses:
+    sets, notes = [], []
+    for name in PARAMETER_SETS:
+        response = model.respond(parameter_set(name))
+        verdict = measure(response)[1]
+        curve = step_response(name, response)
+        if curve is not None:
+            sets.append(curve)
+        if not verdict.ok:
+            shown = "as far as it goes" if curve is not None else "so it is not drawn"
+            notes.append(f"{name} under this scenario ends {verdict.outcome} ({verdict.text}); {shown}.")
+    curves = [(d, step_response(d.design_id, model.respond(_parameters(problem, d)))) for d in designs]
+    failed = [design.design_id for design, curve in curves if curve is None]
+    if failed:
+        notes.append(f"These designs did not complete when simulated again: {', '.join(failed)}.")
+    return Responses(tuple(sets), tuple(c for _, c in curves if c is not None), tuple(notes))
 
 
 def _chosen(front: Sequence[Design], best: Sequence[Design]) -> list[Design]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 import pyarrow as pa
 
@@ -15,7 +16,7 @@ from divideropt.campaign.config import Campaign
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
 from divideropt.errors import UsageError
-from divideropt.problem import Evaluations, Problem
+from divideropt.problem import Evaluations, Problem, one_thread
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.setting import setting_of
 from divideropt.store import Store, TableSchema
@@ -119,10 +120,9 @@ def read_study(store: Store) -> StudyData:
     method, problem, run = method_of(campaign), build_problem(campaign), plan_runs(campaign)[0]
     schema = TableSchema.of(problem)
     parts = [schema.evaluations(part) for part in store.log(run.name, schema).read()]
-    budget = run.options.budget(len(problem.space))
     logged = sum(len(part) for part in parts)
-    notes = [] if logged >= budget else [f"Not finished: {logged} of {budget} designs are simulated."]
-    least = budget // _count(run.options)
+    notes = [] if logged >= run.budget else [f"Not finished: {logged} of {run.budget} designs are simulated."]
+    least = run.budget // _count(run.options)
     if logged < least:
         raise UsageError(
             f"{store.folder}: {logged} designs are logged, and one {_UNITS[method][0]} has {least}: nothing to "
@@ -131,7 +131,8 @@ def read_study(store: Store) -> StudyData:
     together = Evaluations.together(parts)
     house, failed_blocks = None, None
     if method == "sobol":
-        sobol = sobol_study(together, problem)
+        with one_thread():  # with another number of threads the last bits of the intervals would be others
+            sobol = sobol_study(together, problem)
         table, undefined, failures = sobol.indices, sobol.undefined, sobol.failures
         units, failed_blocks, left_over = sobol.blocks, sobol.failed_blocks, sobol.left_over
         house = house_of_quality(table, problem, thesis=bool(dividers(problem.model)))
@@ -163,8 +164,9 @@ def quantity_words(name: str, problem: Problem) -> str:
     """Name a quantity for people; of a signed one the magnitude is analysed, which is said."""
     if name == OUTCOME:
         return "outcome ok"
-    words = name.replace("_", " ")
-    return f"magnitude of {words}" if problem.model.quantities[name].signed else words
+    quantity = problem.model.quantities[name]
+    words = axis_of(quantity, ()).words
+    return f"magnitude of {words}" if quantity.signed else words
 
 
 def write_indices(data: StudyData, store: Store) -> None:
@@ -184,7 +186,21 @@ def read_indices(store: Store) -> pd.DataFrame | None:
         table = pd.read_parquet(path)
     except (OSError, ValueError, pa.ArrowException):
         return None
-    return table if list(table.columns) == list(COLUMNS) else None
+    return table if _is_of_indices(table) else None
+
+
+def _is_of_indices(table: pd.DataFrame) -> bool:
+    """Whether a table is one that a study has written: a file in a store may be anybody's."""
+    if list(table.columns) != list(COLUMNS):
+        return False
+    numbers, words = table[["value", "low", "high", "samples", "used"]], ["quantity", "variable", "kind", "treatment"]
+    if not all(pd.api.types.is_numeric_dtype(kind) for kind in numbers.dtypes):
+        return False
+    if not bool(np.isfinite(numbers[["value", "samples"]].to_numpy(np.float64)).all()):
+        return False
+    texts = all(isinstance(text, str) for column in words for text in table[column])
+    keys = table[[*words, "with", "samples"]].astype(str)
+    return texts and not bool(keys.duplicated().any())
 
 
 def _count(options: object) -> int:

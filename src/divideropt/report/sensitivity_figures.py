@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 from divideropt.analysis.failures import PARTS, Failures
 from divideropt.analysis.treatments import Treatment
 from divideropt.models.base import FloatArray
-from divideropt.report.display import Axis, Shown, axis_of, number, rounded
+from divideropt.report.display import Axis, Shown, axis_of, labels_of, number, rounded
 from divideropt.report.figures import layout, plain
 from divideropt.report.palette import COLOURS, DASHES
 from divideropt.report.sensitivity_data import StudyData, first_of, quantity_words
@@ -182,7 +182,8 @@ def effect_axis(data: StudyData, quantity: str, values: Sequence[float]) -> Axis
 
 def variable_labels(data: StudyData) -> list[tuple[str, str]]:
     """Names of the variables, and what they are called in a figure: the symbol where there is one."""
-    return [(axis.name, axis.symbol or axis.words) for axis, _, _ in data.variables]
+    axes = [axis for axis, _, _ in data.variables]
+    return list(zip([axis.name for axis in axes], labels_of(axes), strict=True))
 
 
 def _panels(titles: Sequence[str]) -> go.Figure:
@@ -238,12 +239,18 @@ def _heat(
         hovertemplate="%{customdata}<extra></extra>",
         **where,
     )
-    percent = place is None
-    for i, row in enumerate(values.tolist()):
-        for j, value in enumerate(row):
-            if value == value:  # noqa: PLR0124 (NaN)
-                text = f"{100 * value:.0f} %" if percent else f"{value:.2f}".replace("-", "−")
-                figure.add_annotation(x=j, y=i, text=text, showarrow=False, font={"size": 11}, **where)
+    percent, known = place is None, np.argwhere(np.isfinite(values)).tolist()
+    shown = [values[i, j] for i, j in known]
+    figure.add_scatter(  # one trace: a figure of annotations takes minutes where variables are many
+        x=[plain(columns[j]) for _, j in known],
+        y=[plain(rows[i]) for i, _ in known],
+        mode="text",
+        text=[f"{100 * value:.0f} %" if percent else f"{value:.2f}".replace("-", "−") for value in shown],
+        textfont={"size": 11},
+        hoverinfo="skip",
+        showlegend=False,
+        **where,
+    )
     figure.update_xaxes(showgrid=False, **where)
     figure.update_yaxes(showgrid=False, **where)
 

@@ -25,6 +25,10 @@ from divideropt.report.sensitivity_figures import (
 from divideropt.report.sweeps_page import write_sweeps
 from divideropt.store import Store
 
+LEAST_IN_FULL, MOST_IN_FULL = 1e-4, 1e6
+"""Numbers with an interval below the one and from the other on are written with powers of ten: six places would show
+them as 0."""
+
 
 def write_study(store: Store, out: Path | None = None, data: StudyData | None = None) -> Path:
     """Write the page of a study, finished or not, and of a Morris or Sobol study its table of indices.
@@ -80,9 +84,14 @@ def study_text(data: StudyData) -> str:
     lines = [f"{data.units} {data.unit}: {failed}{': ' + how if how else ''}", *data.notes]
     names = [axis.name for axis, _, _ in data.variables]
     width = max(map(len, names))
-    for quantity in data.objectives:
+    reasons = {item.quantity: item.reason for item in reversed(data.undefined)}  # under the first treatment
+    for quantity in dict.fromkeys(o.quantity.name for o in data.problem.objectives):
         kinds = ("S1", "ST") if data.method == "sobol" else ("mu_star", "sigma")
         tables = [data.first(quantity, kind) for kind in kinds]
+        if tables[0].empty:
+            reason = reasons.get(quantity, "it is defined in too few designs")
+            lines.append(f"{quantity_words(quantity, data.problem)}: no numbers, since {reason}")
+            continue
         shown = _shown(data, quantity, tables[0])
         unit = f" [{shown.unit}]" if shown.unit else ""
         lines.append(f"{quantity_words(quantity, data.problem)}{unit}: {' and '.join(kinds)}, 95 % intervals")
@@ -90,7 +99,8 @@ def study_text(data: StudyData) -> str:
             cells = [_interval(table, name, shown.scale) for table in tables]
             lines.append(f"  {name:<{width}}  {'  '.join(cells)}")
     if data.house is not None:
-        lines.append("House of Quality, 0 to 4; in brackets the author's:")
+        beside = "; in brackets the author's" if any(row.author for row in data.house.rows) else ""
+        lines.append(f"House of Quality, 0 to 4{beside}:")
         for row in house_rows(data.house):
             cells = [f"{c.score}({c.author})" if c.author else c.score for c in row.cells]
             words = row.words + (", a judgement" if row.judgement else "")
@@ -162,5 +172,7 @@ def _interval(table: Any, name: str, scale: float) -> str:
     half = (table.loc[name, "high"] - table.loc[name, "value"]) * scale
     if half != half:  # noqa: PLR0124 (NaN)
         return number(value, 3)
+    if max(abs(value), half) >= MOST_IN_FULL or 0.0 < max(abs(value), half) < LEAST_IN_FULL:
+        return f"{number(value, 3)} ± {number(half, 2)}"
     places = max(0, 1 - math.floor(math.log10(half))) if half > 0.0 else 3  # two digits of the half width
     return f"{value:.{min(places, 6)}f} ± {half:.{min(places, 6)}f}".replace("-", "−")

@@ -8,7 +8,7 @@ from divideropt.analysis.house_of_quality import house_of_quality
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers
 from divideropt.errors import DivideroptError
-from divideropt.report.display import axis_of
+from divideropt.report.display import axis_of, labels_of
 from divideropt.report.house_words import HouseRow, house_rows, house_sentence
 from divideropt.report.sensitivity_data import method_of, quantity_words, read_indices
 from divideropt.store import Store
@@ -85,7 +85,7 @@ def _sobol(study: Store) -> SobolSummary | None:
     return SobolSummary(
         indices,
         tuple((name, quantity_words(name, problem)) for name in names),
-        tuple((axis.name, axis.symbol or axis.words) for axis in axes),
+        tuple(zip([axis.name for axis in axes], labels_of(axes), strict=True)),
         tuple((axis.words, axis.symbol) for axis in axes),
         house_rows(house),
         house_sentence(house, {axis.name: axis.words for axis in axes}),

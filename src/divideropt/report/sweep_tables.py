@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from divideropt.analysis import Effect, Failures
+from divideropt.analysis import Effect, FailedStretch
 from divideropt.report.display import Axis, number
 from divideropt.report.sweeps_data import SweepFacts, SweepsData
 from divideropt.report.tables import Cell, Heading, Row, Table
@@ -103,7 +103,7 @@ def _effect_cell(effect: Effect, axis: Axis) -> Cell:
     return Cell(f"{least} … {greatest} ({share_words(effect.relative)})")
 
 
-def _stretch_words(stretch: Failures, axis: Axis) -> str:
+def _stretch_words(stretch: FailedStretch, axis: Axis) -> str:
     how = ", ".join(stretch.outcomes)
     if stretch.count == 1:
         return f"{how} at {axis.short(stretch.begin)}"

@@ -8,13 +8,14 @@ import numpy as np
 from divideropt.analysis import Effect, Sweep, effects_of, sweeps_of
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dividers, plan_runs
+from divideropt.campaign.simulate import crashed
 from divideropt.errors import UsageError
-from divideropt.models import Outcome, Parameter, Quantity, Verdict
+from divideropt.models import Parameter, Quantity, Verdict
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import Divider
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.scenarios import BASE
-from divideropt.problem import Evaluations, Problem
+from divideropt.problem import Evaluations, Problem, one_thread
 from divideropt.report.display import Axis, axis_of
 from divideropt.report.responses import LEAD, LEAD_POINTS, StepResponse, step_response
 from divideropt.report.setting import setting_of
@@ -188,7 +189,8 @@ def _facts(
     problem: Problem,
 ) -> SweepFacts:
     axis = axis_of(parameter, sweep.values)
-    responses = () if model is None else tuple(_responses(sweep, axis, model, problem.fixed))
+    with one_thread():  # as the study was simulated, so that a response ends as its design did
+        responses = () if model is None else tuple(_responses(sweep, axis, model, problem.fixed))
     return SweepFacts(sweep, axis, effects_of(sweep, base, quantities), responses)
 
 
@@ -206,7 +208,7 @@ def _response(value: float, name: str, axis: Axis, model: Divider, fixed: Mappin
             lead_points = LEAD_POINTS if model.scenario.settled else RESPONSE_POINTS
             curve = step_response(axis.short(value), response, _lead(model), lead_points, RESPONSE_POINTS)
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
-        return ValueResponse(value, None, Verdict(Outcome.CRASHED, f"the model broke down: {error}"), None)
+        return ValueResponse(value, None, crashed(error), None)
     settling = float(row[list(model.quantities).index("settling_time")])
     return ValueResponse(value, curve, verdict, settling if verdict.ok else None)
 

@@ -4,7 +4,7 @@ import pytest
 from divideropt.models.base import Outcome, Verdict
 from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step, solver_settings
 from divideropt.models.divider.quantities import GEOMETRIC
-from divideropt.models.divider.scenarios import BASE, Scenarios, Worst, outcomes_by_scenario
+from divideropt.models.divider.scenarios import BASE, Scenarios, Worst, failed_scenario, outcomes_by_scenario
 
 OTHER = Scenario(load_pressures=(5e6, 5e6), events=(load_step(2, 9e6),))
 MODELS = {BASE: Divider(), "low": Divider(scenario=OTHER)}
@@ -84,6 +84,9 @@ def test_what_is_known_of_each_scenario_follows_from_the_verdict() -> None:
     assert outcomes_by_scenario(low, scenarios) == (Outcome.OK, Outcome.UNSTABLE, None)
     sampled = Verdict(Outcome.UNSTABLE, "in 3 of 64 samples: in scenario low: an equilibrium is unstable")
     assert outcomes_by_scenario(sampled, scenarios) == (Outcome.OK,) * 3
+    assert [failed_scenario(verdict) for verdict in (own, low, sampled)] == [None, "low", "low"]
+    broken = Verdict(Outcome.CRASHED, "in 1 of 64 samples: the model broke down")
+    assert outcomes_by_scenario(broken, scenarios) == (Outcome.OK,) * 3
     assert outcomes_by_scenario(Verdict(Outcome.CRASHED, "the model broke down"), scenarios) == (Outcome.CRASHED,) * 3
 
 

@@ -1,7 +1,7 @@
 """The author's study: whether its ranges are those of the parameters, and hold his base set where he kept to it."""
 
 from divideropt.models.divider import PARAMETERS
-from divideropt.models.divider.study import THESIS_RANGES
+from divideropt.models.divider.study import LISTING_NAMES, THESIS_RANGES
 
 
 def test_every_range_is_a_parameter_s_and_within_its_domain() -> None:
@@ -19,14 +19,6 @@ def test_the_base_set_is_within_every_range() -> None:
 
 def test_the_sweeps_of_his_code_span_them(reference) -> None:
     rows = reference("listing_sensitivity")
-    ours = {
-        "r": "spool_radius",
-        "b": "groove_width",
-        "deltaPt": "total_pressure_drop",
-        "Po_Pt": "fixed_drop_ratio",
-        "frac_open": "centred_opening",
-        "trim": "rim_thickness",
-    }
-    for column, name in ours.items():
+    for column, name in LISTING_NAMES.items():
         values = rows[rows["param"] == column]["value"]
         assert (values.min(), values.max()) == THESIS_RANGES[name], name

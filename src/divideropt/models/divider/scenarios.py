@@ -10,12 +10,17 @@ import numpy as np
 from divideropt.models.base import FloatArray, Outcome, Parameter, Quantity, Verdict
 from divideropt.models.divider.model import Divider
 from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
+from divideropt.models.uncertain import fails_in_samples
 
 BASE = "scenario"
 """Name of the scenario whose quantities have plain names."""
 
 AS_GOOD_AS_EQUAL = 1e-3
 """Part of a magnitude within which two scenarios are equally bad: some times what the solver's tolerance leaves."""
+
+
+GATHERED = ("worst", "least")
+"""What the name of a quantity begins with that is gathered over scenarios: the largest of it, the smallest."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +40,7 @@ class Worst:
     @property
     def name(self) -> str:
         """Name of the quantity it makes, `worst.settling_time` or `least.stability_margin`."""
-        return f"{'least' if self.least else 'worst'}.{self.quantity}"
+        return f"{GATHERED[self.least]}.{self.quantity}"
 
 
 @dataclass(frozen=True)
@@ -136,14 +141,19 @@ def outcomes_by_scenario(verdict: Verdict, scenarios: Sequence[str]) -> tuple[Ou
         come from one scenario's simulation, a crash say, is the outcome of all. A design that fails in samples of
         uncertain parameters only is ok in every scenario as it is.
     """
+    if verdict.ok or fails_in_samples(verdict):
+        return (Outcome.OK,) * len(scenarios)
     if verdict.outcome in (Outcome.CRASHED, Outcome.TIMED_OUT):
         return (verdict.outcome,) * len(scenarios)
-    if verdict.ok or _SAMPLED.match(verdict.text):
-        return (Outcome.OK,) * len(scenarios)
-    named = _NAMED.match(verdict.text)
-    place = scenarios.index(named[1] if named else BASE)
+    place = scenarios.index(failed_scenario(verdict) or BASE)
     before: tuple[Outcome | None, ...] = (Outcome.OK,) * place
     return (*before, verdict.outcome, *(None,) * (len(scenarios) - place - 1))
+
+
+def failed_scenario(verdict: Verdict) -> str | None:
+    """Return the scenario in which a design, or a sample of it, failed first; None for that of `BASE`."""
+    named = _NAMED.search(verdict.text)
+    return named[1] if named else None
 
 
 def _of_scenario(name: str, events: Sequence[int]) -> Iterator[Quantity]:
@@ -167,11 +177,8 @@ def _first(earlier: Verdict, later: Verdict, name: str) -> Verdict:
     return Verdict(later.outcome, f"in scenario {name}: {later.text}")
 
 
-_NAMED = re.compile(r"in scenario ([a-z][a-z0-9_]*): ", re.ASCII)
-"""How the text of a verdict names the scenario."""
-
-_SAMPLED = re.compile(r"in [0-9]+ of [0-9]+ samples: ", re.ASCII)
-"""How it says that the design fails in samples of uncertain parameters, not as it is."""
+_NAMED = re.compile(r"(?:^|samples: )in scenario ([a-z][a-z0-9_]*): ", re.ASCII)
+"""How the text of a verdict names the scenario, where there are samples after their share."""
 
 
 def _worst_of(over: FloatArray, signed: bool, least: bool) -> FloatArray:

@@ -22,3 +22,15 @@ THESIS_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
 
 THESIS_POINTS = 100
 """Points of each sweep: `nparam` of changeall.m."""
+
+LISTING_NAMES: Mapping[str, str] = MappingProxyType(
+    {
+        "r": "spool_radius",
+        "b": "groove_width",
+        "deltaPt": "total_pressure_drop",
+        "Po_Pt": "fixed_drop_ratio",
+        "frac_open": "centred_opening",
+        "trim": "rim_thickness",
+    }
+)
+"""What his code calls the parameters of the sweeps that it was run for again, as in `listing_sensitivity.csv`."""
