@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     cls=Taught,
     examples=(
         "divideropt run campaigns/quickstart.yaml",
-        "divideropt run campaigns/divider.yaml --workers 4 --store /tmp/divider",
+        "divideropt run campaigns/divider.yaml --workers 4 --store results/second",
         "divideropt run campaigns/divider.yaml           # once more: goes on, or says that all is done",
         "divideropt run campaigns/divider.yaml --json | jq '.front'",
     ),
