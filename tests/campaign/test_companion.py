@@ -228,13 +228,13 @@ def test_the_words_say_what_happens(whole, tmp_path):
 
 
 PHASES = [
-    ("evaluations/nsga2-1", 2),
+    pytest.param("evaluations/nsga2-1", 2, marks=pytest.mark.slow),
     ("nominal/evaluations/nsga2-1", 2),
-    ("nominal/optimality", 1),
+    pytest.param("nominal/optimality", 1, marks=pytest.mark.slow),
     ("beside", 2),
-    ("nominal/beside", 1),
+    pytest.param("nominal/beside", 1, marks=pytest.mark.slow),
 ]
-"""Folders of parts, and how many tables are appended there before the end comes."""
+"""Folders of parts, and how many tables are appended there before the end comes; the default run has one a store."""
 
 
 def begun(whole: Path, store: Path, folder: str) -> None:
