@@ -1,9 +1,12 @@
 import math
+import subprocess
+import sys
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from divideropt import units
 from divideropt.units import format_measure, parse_measure
 
 # The right-hand sides are the definitions of the units; each must come out as the nearest float.
@@ -158,3 +161,33 @@ def test_any_text_is_a_finite_number_or_a_value_error(text: str, unit: str) -> N
 def test_a_logarithmic_or_offset_unit_is_a_value_error(text: str, unit: str) -> None:
     with pytest.raises(ValueError, match="of another kind; here a number"):
         parse_measure(text, unit)
+
+
+PRODUCTS = ["m^3/s", "mL/ms", "1/s", "kg/m^3", "g/cm^3", "mm^2/s", "N/m", "N*s/m", "1/ms^2", "m^-1*bar", "min"]
+
+
+@pytest.mark.parametrize("wanted", ["m", "Pa", "m^3", "m^3/s", "1/s", "kg", "kg/m^3", "m^2/s", "s", "N", "%", ""])
+def test_what_needs_no_pint_is_what_pint_says(wanted: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def factors() -> dict[str, object]:
+        units._factor.cache_clear()
+        return {given: factor_or_none(given, wanted) for given in [*units._KNOWN, *PRODUCTS]}
+
+    ours = factors()
+    monkeypatch.setattr(units, "_ten", lambda unit: None)
+    assert factors() == ours
+    assert any(ours.values())
+
+
+def factor_or_none(given: str, wanted: str) -> object:
+    try:
+        return units._factor(given, wanted)
+    except ValueError:
+        return None
+
+
+def test_the_usual_units_need_no_pint() -> None:
+    code = (
+        "import sys; from divideropt.units import parse_measure as p; "
+        "p('3 um', 'm'); p('1 mL', 'm^3'); assert 'pint' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

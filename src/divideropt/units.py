@@ -22,8 +22,27 @@ UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
 LONGEST = 80
 """Characters of a measure."""
 
+_TENS = {"": 0, "G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6}
+"""Prefixes as powers of ten."""
+
+_BASES = {
+    "m": (0, (1, 0, 0)),
+    "g": (-3, (0, 1, 0)),
+    "s": (0, (0, 0, 1)),
+    "Pa": (0, (-1, 1, -2)),
+    "bar": (5, (-1, 1, -2)),
+    "N": (0, (1, 1, -2)),
+    "L": (-3, (3, 0, 0)),
+    "l": (-3, (3, 0, 0)),
+}
+"""Units as powers of ten of SI units, and their exponents of metre, kilogram and second."""
+
+_KNOWN = {tens + name: (_TENS[tens] + ten, kind) for name, (ten, kind) in _BASES.items() for tens in _TENS}
+_KNOWN["%"] = (-2, (0, 0, 0))
+
 _MEASURE = re.compile(rf"\s*({NUMBER})\s*({UNIT})?\s*", re.ASCII)
 _PLAIN = re.compile(rf"\s*{NUMBER}\s*", re.ASCII)
+_PART = re.compile(r"([*/]?)([A-Za-zµμ°%]+)(?:\^(-?[1-9]))?", re.ASCII)
 
 
 def parse_measure(value: object, unit: str) -> float:
@@ -92,7 +111,10 @@ def _wanted(unit: str) -> str:
 @cache
 def _factor(given: str, wanted: str) -> Decimal:
     """Return what to multiply a number in `given` by to have it in `wanted`; decimal, so that 3 um is 3e-6."""
-    import pint  # noqa: PLC0415 (late: a call that converts nothing does not pay for it)
+    ours, theirs = _ten(given), _ten(wanted)
+    if ours is not None and theirs is not None and ours[1] == theirs[1]:
+        return Decimal(1).scaleb(ours[0] - theirs[0])
+    import pint  # noqa: PLC0415 (late: it takes half a second, and few units need it)
 
     registry = _registry()
     try:
@@ -101,6 +123,19 @@ def _factor(given: str, wanted: str) -> Decimal:
         raise ValueError(f"the unit {given!r} is not known; here {_wanted(wanted)}") from None
     except (pint.PintError, AssertionError, ArithmeticError, TypeError):  # a logarithmic or offset unit
         raise ValueError(f"the unit {given!r} is of another kind; here {_wanted(wanted)}") from None
+
+
+def _ten(unit: str) -> tuple[int, list[int]] | None:
+    """Read a unit that is a power of ten of SI units: the power, and its dimensions; None for any other."""
+    power, dimensions = 0, [0, 0, 0]
+    for operator, name, exponent in _PART.findall(unit.removeprefix("1")):
+        if name not in _KNOWN:
+            return None
+        times = int(exponent or 1) * (-1 if operator == "/" else 1)
+        ten, kind = _KNOWN[name]
+        power += times * ten
+        dimensions = [d + times * k for d, k in zip(dimensions, kind, strict=True)]
+    return power, dimensions
 
 
 @cache

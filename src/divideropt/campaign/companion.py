@@ -29,11 +29,13 @@ class Compared:
         outcomes: What it left in its store; None where it found no feasible design.
         points: Designs of its front that were simulated under the whole campaign.
         feasible: How many of them are feasible there, too.
+        simulated: Points of either front that this call simulated under the other's problem.
     """
 
     outcomes: Outcomes | None
     points: int
     feasible: int
+    simulated: int
 
 
 def run_campaign(
@@ -104,24 +106,27 @@ class Companion:
             outcomes = Runner(self._nominal.campaign, folder, self._workers, self._words, self._again).run()
         except NoFeasibleDesignError as error:
             say(f"nominal: {error}", self._words)
-        self._simulate_both()
+        simulated = self._simulate_both()
         points = self._nominal.points()
         found = self._own.schema.evaluations(self._own.known(points, self._nominal.schema))
-        return Compared(outcomes, len(found), int(self._own.problem.tell(found).feasible.sum()))
+        return Compared(outcomes, len(found), int(self._own.problem.tell(found).feasible.sum()), simulated)
 
-    def _simulate_both(self) -> None:
+    def _simulate_both(self) -> int:
+        """Simulate what is lacking of either front; return how many points that were."""
         own, nominal = self._own, self._nominal
         with own.store.writing(), nominal.store.writing(), self._interruption.signals():
             lacking = [
                 (own, _lacking(own, nominal), "of the companion's front under the whole campaign"),
                 (nominal, _lacking(nominal, own), "of the campaign's front as the companion's are"),
             ]
-            if not any(points.num_rows for _, points, _ in lacking):
-                return
+            count = sum(int(points.num_rows) for _, points, _ in lacking)
+            if count == 0:
+                return 0
             with hired(own.campaign.parallel, self._workers, own.store.folder) as crew:
                 for side, points, words in lacking:
                     if points.num_rows:
                         self._simulate(side, points, f"nominal: simulated {{}} of {{}} designs {words}", crew)
+        return count
 
     def _simulate(self, side: Side, points: pa.Table, words: str, crew: Crew | None) -> None:
         """Simulate points of the other's front under a side's problem."""

@@ -165,8 +165,13 @@ def _affordable(model: object, uncertainty: object) -> OptimalityConfig:
     return OptimalityConfig(points=FEW_POINTS if quick else 0)
 
 
+def names_folder(name: str) -> bool:
+    """Whether a campaign can be called so: its folder of results has this name."""
+    return _NAME.fullmatch(name) is not None
+
+
 def _name(value: object) -> str:
-    if not isinstance(value, str) or not _NAME.fullmatch(value):
+    if not isinstance(value, str) or not names_folder(value):
         raise ValueError(
             f"{show(value)} cannot name the folder of results; use 1 to 64 of A-Z, a-z, 0-9, - and _, "
             "a letter or digit first, in quotes if it looks like a number, and no device's name such as con"

@@ -47,8 +47,6 @@ class Designs:
 def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
     """Read a CSV file whose columns are parameters by name, in the parameters' units.
 
-    Every cell is data: of `design_id` any text, a formula too, and of a parameter a plain decimal number.
-
     Args:
         path: The file.
         parameters: What may be a column.
@@ -60,11 +58,19 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
         UsageError: The file cannot be read.
         FileMistakes: Every unknown column, empty cell and value out of its domain, with row and column.
     """
-    known = {p.name: p for p in parameters}
     text = read_text_file(path, LARGEST_FILE, "table of designs")
     if not text.strip():
         raise UsageError(f"{path}: the file is empty; its first line must name the columns")
-    rows = _rows(text, str(path))
+    return parse_designs(text, str(path), parameters)
+
+
+def parse_designs(text: str, path: str, parameters: Sequence[Parameter]) -> Designs:
+    """Read designs from CSV; `path` names it in mistakes. Otherwise as `read_designs`.
+
+    Every cell is data: of `design_id` any text, a formula too, and of a parameter a plain decimal number.
+    """
+    known = {p.name: p for p in parameters}
+    rows = _rows(text, path)
     _, header = next(rows)
     _check_header(path, header, known)
     given = tuple(name for name in header if name != IDENTITY)
@@ -77,7 +83,7 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
             mistakes.append(Mistake(line + 1, 1, "from here on nothing was read, after so many mistakes"))
             break
     if mistakes:
-        raise FileMistakes(str(path), mistakes)
+        raise FileMistakes(path, mistakes)
     matrix = np.array(values, dtype=np.float64).reshape(-1, len(given)) if given else np.empty((len(identities), 0))
     return Designs(given, matrix, tuple(identities) if IDENTITY in header else None)
 
@@ -133,11 +139,9 @@ def _lines(text: str, path: str) -> Iterator[str]:
         yield line
 
 
-def _check_header(path: Path, header: list[str], known: dict[str, Parameter]) -> None:
+def _check_header(path: str, header: list[str], known: dict[str, Parameter]) -> None:
     if not header:
-        raise FileMistakes(
-            str(path), [Mistake(1, 1, "the first line is blank, and must name the columns; delete it")]
-        )
+        raise FileMistakes(path, [Mistake(1, 1, "the first line is blank, and must name the columns; delete it")])
     mistakes: list[Mistake] = []
     seen: set[str] = set()
     for column, name in enumerate(header, start=1):
@@ -153,7 +157,7 @@ def _check_header(path: Path, header: list[str], known: dict[str, Parameter]) ->
             mistakes.append(Mistake(1, column, sentence))
         seen.add(name)
     if mistakes:
-        raise FileMistakes(str(path), mistakes)
+        raise FileMistakes(path, mistakes)
 
 
 def _read_row(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -16,7 +16,9 @@ from divideropt.campaign.plugin import load_plugin
 from divideropt.campaign.reader import MOST_MISTAKES, Document, KeyPath, read_document, read_text
 from divideropt.campaign.uncertainty import with_failures
 from divideropt.errors import FileMistakes, Mistake, StoreError, UsageError
-from divideropt.store import Store
+
+if TYPE_CHECKING:
+    from divideropt.store import Store
 
 
 def load_campaign(path: Path | str) -> Campaign:
@@ -40,7 +42,7 @@ def parse_campaign(text: str, path: str = "campaign") -> Campaign:
     return campaign_of(read_text(text, path))
 
 
-def stored_campaign(store: Store) -> Campaign:
+def stored_campaign(store: "Store") -> Campaign:
     """Read the campaign of a store, as resolved when it was made.
 
     Raises:

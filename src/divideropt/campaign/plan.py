@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +49,20 @@ def plan_runs(campaign: Campaign) -> tuple[Run, ...]:
         for plan in campaign.strategies
         for seed in plan.seeds
     )
+
+
+def plan_data(campaign: Campaign) -> dict[str, Any]:
+    """Return what a campaign would run, as plain data for a program."""
+    runs = plan_runs(campaign)
+    return {
+        "name": campaign.name,
+        "variables": list(campaign.variables),
+        "objectives": list(campaign.objectives),
+        "constraints": list(campaign.constraints),
+        "nominal": campaign.nominal,
+        "budget": sum(run.budget for run in runs),
+        "runs": [{"run": r.name, "strategy": r.strategy, "seed": r.seed, "budget": r.budget} for r in runs],
+    }
 
 
 def build_model(campaign: Campaign) -> Model:

@@ -3,7 +3,7 @@
 import json
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -55,6 +55,34 @@ class Standing:
     best: float | None
     hypervolume: float | None
     ended: str | None
+
+    @property
+    def left(self) -> float | None:
+        """How long its budget lasts at its rate [s]; None before that is known, and 0 once it has ended."""
+        if self.ended is not None:
+            return 0.0
+        return (self.budget - self.done) / self.rate if self.rate > 0 else None
+
+
+def time_left(standings: Sequence[Standing], budgets: Mapping[str, int]) -> float | None:
+    """Estimate how long all runs take, should each spend its budget.
+
+    Args:
+        standings: Of the runs that have begun.
+        budgets: Evaluations of every run, by name.
+
+    Returns:
+        All that is left at the rate at which the runs at work go on together, or what the slowest of them has left,
+        if that is longer [s]; None before any has a rate.
+    """
+    working = [s for s in standings if s.ended is None]
+    rate = sum(s.rate for s in working)
+    begun = {s.run for s in standings}
+    waiting = sum(budget for run, budget in budgets.items() if run not in begun)
+    if rate <= 0.0:
+        return 0.0 if not working and not waiting else None
+    together = (waiting + sum(s.budget - s.done for s in working)) / rate
+    return max([together, *(s.left for s in working if s.left is not None)])
 
 
 class Reporter:
@@ -113,9 +141,9 @@ class Reporter:
 class Display:
     """Shows the standings of all runs until it is left."""
 
-    def __init__(self, folder: Path, runs: Sequence[str], stream: TextIO) -> None:
-        """Show the files of `folder` on `stream`, in colour and in place if that is a terminal."""
-        self._folder, self._runs = folder, runs
+    def __init__(self, folder: Path, budgets: Mapping[str, int], stream: TextIO) -> None:
+        """Show the files of `folder` for these runs on `stream`, in place if that is a terminal."""
+        self._folder, self._budgets = folder, budgets
         self._console = Console(file=stream, highlight=False)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._show, daemon=True)
@@ -153,22 +181,29 @@ class Display:
 
     def _lines(self, said: set[str]) -> None:
         """Print a line for each run that has something new to say."""
-        for standing in self._standings():
+        standings = self._standings()
+        for standing in standings:
             if standing.run not in said:
                 self._console.print(_line(standing), soft_wrap=True)
             if standing.ended is not None:
                 said.add(standing.run)
+        left = time_left(standings, self._budgets)
+        if left:
+            self._console.print(f"all runs: {_duration(left)} left at most", soft_wrap=True)
 
     def _table(self) -> Table:
-        table = Table(box=None)
-        for heading in ("run", "evaluations", "", "rate [1/s]", "best max λ", "hypervolume"):
+        standings = self._standings()
+        left = time_left(standings, self._budgets)
+        table = Table(box=None, caption=f"all runs: {_duration(left)} left at most" if left else None)
+        for heading in ("run", "evaluations", "", "rate [1/s]", "left", "best max λ", "hypervolume"):
             table.add_column(heading, justify="left" if heading == "run" else "right")
-        for s in self._standings():
+        for s in standings:
             table.add_row(
                 s.run,
                 f"{s.done} of {s.budget}",
                 _state(s),
                 f"{s.rate:.0f}",
+                "" if s.ended is not None else _duration(s.left),
                 _number(s.best),
                 _number(s.hypervolume),
             )
@@ -176,7 +211,7 @@ class Display:
 
     def _standings(self) -> list[Standing]:
         found = []
-        for run in self._runs:
+        for run in self._budgets:
             try:
                 text = (self._folder / f"{run}.json").read_text(encoding="utf-8")
                 found.append(Standing(**json.loads(text)))
@@ -196,10 +231,10 @@ class Counter:
 
     def __init__(self, words: str, total: int, stream: TextIO) -> None:
         """Begin at 0; `words` has a place for the count and one for the total."""
-        self._words, self._total, self._count = words, total, 0
+        self._words, self._total, self._count, self._width = words, total, 0, 0
         self._console = Console(file=stream, highlight=False)
         self._seconds = SHOW_SECONDS if self._console.is_terminal else LINE_SECONDS
-        self._shown = time.monotonic()
+        self._began = self._shown = time.monotonic()
 
     def __enter__(self) -> "Counter":
         """Begin to show."""
@@ -218,13 +253,20 @@ class Counter:
     def _show(self, end: str) -> None:
         self._shown = time.monotonic()
         with suppress(OSError):  # nobody to see it
-            self._console.print(self._words.format(self._count, self._total), end=end, soft_wrap=True)
+            words = self._words.format(self._count, self._total)
+            if 0 < self._count < self._total:
+                each = (self._shown - self._began) / self._count
+                words += f", {_duration(each * (self._total - self._count))} left"
+            # in place, spaces cover what was longer
+            self._console.print(f"{words:{self._width}}", end=end, soft_wrap=True)
+            self._width = len(words) if self._console.is_terminal else 0
 
 
 def _line(s: Standing) -> str:
     replayed = f", {s.replayed} from the log" if s.replayed else ""
+    left = "" if not s.left else f", {_duration(s.left)} left at most"
     return (
-        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({_state(s)}), {s.rate:.0f}/s, "
+        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({_state(s)}), {s.rate:.0f}/s{left}, "
         f"best max λ {_number(s.best)}, hypervolume {_number(s.hypervolume)}"
     )
 
@@ -233,6 +275,20 @@ def _state(s: Standing) -> str:
     if s.ended is None:
         return f"{100 * s.done / s.budget:.0f} %"
     return "done" if s.done == s.budget else f"done: {s.ended}"
+
+
+def _duration(seconds: float | None) -> str:
+    """Write a time in the two largest of its units, as nobody knows it more exactly."""
+    if seconds is None:
+        return "–"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    minutes = round(whole / 60) if whole >= 600 else whole // 60
+    if minutes < 60:
+        return f"{minutes} min" if whole >= 600 else f"{minutes} min {whole % 60} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours < 24 else f"{hours // 24} d {hours % 24} h"
 
 
 def _number(value: float | None) -> str:

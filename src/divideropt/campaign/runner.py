@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
+import pyarrow as pa
 
 from divideropt.analysis import (
     Convergence,
@@ -21,6 +22,7 @@ from divideropt.analysis import (
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew, ProcessDiedError
 from divideropt.campaign.dump import dump_campaign
+from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_endings, check_extends
 from divideropt.campaign.hire import hired
@@ -32,10 +34,10 @@ from divideropt.campaign.plan import Run, build_problem, dividers, plan_runs
 from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
-from divideropt.errors import NoFeasibleDesignError, StoreError
+from divideropt.errors import DamagedFileError, NoFeasibleDesignError, StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
-from divideropt.store import Store
+from divideropt.store import Store, TableSchema
 from divideropt.store.files import disk_errors
 
 
@@ -49,6 +51,8 @@ class Outcomes:
         kkt: How near to stationary they are.
         logs: Each run's log, summed up.
         failures: Why runs were given up, by their names; empty where all came to their end.
+        skipped: The runs that had come to their end before.
+        explored: Points of the front that this call simulated again, or the neighbours of.
     """
 
     store: Store
@@ -56,6 +60,13 @@ class Outcomes:
     kkt: Convergence
     logs: Mapping[str, Summary]
     failures: Mapping[str, str]
+    skipped: tuple[str, ...]
+    explored: int
+
+    @property
+    def nothing_new(self) -> bool:
+        """Whether all was there before this call."""
+        return set(self.skipped) == set(self.logs) and self.explored == 0
 
 
 class Runner:
@@ -101,10 +112,14 @@ class Runner:
         problem = build_problem(self._campaign)
         verifier = Verifier(self._campaign, problem, self._store, self._words, self._interruption)
         with self._working(problem, fresh) as crew:
-            for kept in (self._store.verification, self._store.optimality):
-                kept(verifier.schema).table()  # damage is said before hours are spent, not after
-            failures = self._drive(problem, crew)
-            return self._write_fronts(problem, verifier, crew, failures)
+            before = self._explored(verifier.schema)
+            skipped = self._done(problem)
+            failures = self._drive(problem, crew, skipped)
+            logs, written = self._write_fronts(problem, verifier, crew, failures)
+            combined = written["combined"]
+            kkt, count = convergence(combined), tally(combined, verifier.schema)
+            explored = self._explored(verifier.schema) - before
+            return Outcomes(self._store, count, kkt, logs, failures, skipped, explored)
 
     def sample(self, *, fresh: bool = False) -> Mapping[str, str]:
         """Run what is not yet in the store, and make nothing of it: the designs of a study are no candidates.
@@ -120,7 +135,7 @@ class Runner:
         """
         problem = build_problem(self._campaign)
         with self._working(problem, fresh) as crew:
-            return self._drive(problem, crew)
+            return self._drive(problem, crew, self._done(problem))
 
     @contextmanager
     def _working(self, problem: Problem, fresh: bool) -> Iterator[Crew | None]:
@@ -151,14 +166,34 @@ class Runner:
             )
         self._store.write_campaign(self._text)
 
-    def _drive(self, problem: Problem, crew: Crew | None) -> Mapping[str, str]:
-        """Do the runs; return why some were given up, by their names."""
-        endings = self._endings(problem, crew)
+    def _done(self, problem: Problem) -> tuple[str, ...]:
+        """Find the runs that have come to their end, as now asked for, and say so."""
+        schema, runs = TableSchema.of(problem), plan_runs(self._campaign)
+        found = tuple(run.name for run in runs if self._has_ended(run, schema))
+        if found and len(found) < len(runs):
+            say(f"skipped, since they are done: {len(found)} of {len(runs)} runs ({', '.join(found)})", self._words)
+        return found
+
+    def _has_ended(self, run: Run, schema: TableSchema) -> bool:
+        """Whether a run's log goes to the end that was kept of it; every part of it is read and checked."""
+        try:
+            logged = sum(part.num_rows for part in self._store.log(run.name, schema).read())
+            return kept_ending(self._store, run, logged) is not None
+        except DamagedFileError:  # of the log's the replay says it, and the ending follows from the log
+            return False
+
+    def _explored(self, schema: TableSchema) -> int:
+        """How many points were simulated again, or the neighbours of; damage is said before hours are spent."""
+        again, around = (kept(schema).table() for kept in (self._store.verification, self._store.optimality))
+        return int(again.num_rows + around.num_rows)
+
+    def _drive(self, problem: Problem, crew: Crew | None, skipped: Sequence[str]) -> Mapping[str, str]:
+        """Do the runs but those to be skipped; return why some were given up, by their names."""
+        endings = self._endings(problem, crew, [run for run in plan_runs(self._campaign) if run.name not in skipped])
         self._raise_first(endings)
         return {ending.run: ending.failure for ending in endings if ending.failure is not None}
 
-    def _endings(self, problem: Problem, crew: Crew | None) -> list[Ending]:
-        runs = plan_runs(self._campaign)
+    def _endings(self, problem: Problem, crew: Crew | None, runs: Sequence[Run]) -> list[Ending]:
         folder = self._store.status_folder
         with disk_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)
@@ -167,7 +202,9 @@ class Runner:
             for run in runs:  # where this process is alone, an earlier one may have died of the run
                 Mishaps(folder, run.name).forget(deaths=crew is not None)
         self._interruption.check()
-        with Display(folder, [run.name for run in runs], self._words) as display:
+        if not runs:
+            return []
+        with Display(folder, {run.name: run.budget for run in runs}, self._words) as display:
             if crew is None:
                 return [self._persist(lambda run: self._work_here(run, problem), run, display) for run in runs]
             if len(runs) < crew.size:
@@ -241,7 +278,8 @@ class Runner:
 
     def _write_fronts(
         self, problem: Problem, verifier: Verifier, crew: Crew | None, failures: Mapping[str, str]
-    ) -> Outcomes:
+    ) -> tuple[dict[str, Summary], dict[str, pa.Table]]:
+        """Write the fronts, marked with what is known of them; return them, and each run's log summed up."""
         schema = verifier.schema
         names = sorted(run.name for run in plan_runs(self._campaign))
         logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
@@ -257,5 +295,4 @@ class Runner:
                 f"{self._store.folder}: no design is feasible; `divideropt status` says how the simulations ended. "
                 "Widen the bounds of the variables, or loosen the constraints."
             )
-        combined = written["combined"]
-        return Outcomes(self._store, tally(combined, schema), convergence(combined), logs, failures)
+        return logs, written

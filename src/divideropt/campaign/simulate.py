@@ -1,8 +1,9 @@
 """One response as a table: the work of `divideropt simulate`."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -47,10 +48,18 @@ class SimulatedResponse:
     Attributes:
         table: Columns as in `COLUMNS`, one row an instant.
         verdict: How the simulation ended.
+        scenario: Name of the scenario.
+        model: Who simulated it, whose `parameters` and `quantities` have units, symbols and descriptions.
+        parameters: Every parameter of the design, in its unit.
+        quantities: Every metric in its unit; NaN where it is not defined.
     """
 
     table: pd.DataFrame
     verdict: Verdict
+    scenario: str
+    model: Divider
+    parameters: Mapping[str, float]
+    quantities: Mapping[str, float]
 
 
 def simulate(campaign: Campaign, settings: Sequence[str], scenario: str = BASE) -> SimulatedResponse:
@@ -71,9 +80,38 @@ def simulate(campaign: Campaign, settings: Sequence[str], scenario: str = BASE) 
     try:
         with one_thread(), np.errstate(all="ignore"):  # a failed design says so by its outcome
             response = model.respond(parameters)
-            return SimulatedResponse(_table(response), measure(response)[1])
+            row, verdict = measure(response)
+            table = _table(response)
     except (ArithmeticError, ValueError) as error:  # dimensions that no valve has
-        return SimulatedResponse(pd.DataFrame(columns=list(COLUMNS), dtype=float), crashed(error))
+        table, verdict = pd.DataFrame(columns=list(COLUMNS), dtype=float), crashed(error)
+        row = np.full(len(model.quantities), np.nan)
+    quantities = dict(zip(model.quantities, row.tolist(), strict=True))
+    return SimulatedResponse(table, verdict, scenario, model, parameters, quantities)
+
+
+def response_data(response: SimulatedResponse) -> dict[str, Any]:
+    """Return what a program reads of a response: outcome, parameters and metrics with their units, as plain data."""
+    known = response.model.quantities
+    return {
+        "scenario": response.scenario,
+        "outcome": str(response.verdict.outcome),
+        "text": response.verdict.text,
+        "parameters": {
+            name: {"value": value, "unit": response.model.parameters[name].unit}
+            for name, value in response.parameters.items()
+        },
+        "quantities": {
+            name: {"value": _shown(value, logical=known[name].logical), "unit": known[name].unit}
+            for name, value in response.quantities.items()
+        },
+    }
+
+
+def _shown(value: float, *, logical: bool) -> float | bool | None:
+    """A metric as a program reads it: None where it is not defined, yes or no where it is 1 or 0."""
+    if np.isnan(value):
+        return None
+    return bool(value) if logical else value
 
 
 def crashed(error: Exception) -> Verdict:

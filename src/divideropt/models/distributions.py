@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+import scipy
 
 from divideropt.models.base import Domain, FloatArray
 
@@ -99,6 +99,6 @@ class Normal:
 
     def quantiles(self, shares: FloatArray) -> FloatArray:
         """Return the values below which these shares of it lie."""
-        below, above = ndtr((np.array([self.lower, self.upper]) - self.mean) / self.sd)
-        scores = ndtri(below + (above - below) * shares)
+        below, above = scipy.special.ndtr((np.array([self.lower, self.upper]) - self.mean) / self.sd)
+        scores = scipy.special.ndtri(below + (above - below) * shares)
         return np.asarray(np.clip(self.mean + self.sd * scores, self.lower, self.upper))

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Literal, cast
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from divideropt.models.base import FloatArray, Model, Outcome, Parameter, Quantity, Threaded, Verdict, Verifiable
 from divideropt.models.distributions import Distribution
@@ -100,7 +100,7 @@ class Uncertain:
     @cached_property
     def sample(self) -> FloatArray:
         """The sample that all designs see, one column a source, shape (samples, sources), between 0 and 1."""
-        sequence = qmc.Sobol(len(self.sources), rng=self.seed)
+        sequence = scipy.stats.qmc.Sobol(len(self.sources), rng=self.seed)
         points = sequence.random_base2((self.samples - 1).bit_length())[: self.samples]
         return np.asarray(np.clip(points, _SMALLEST_SHARE, 1.0 - _SMALLEST_SHARE))
 

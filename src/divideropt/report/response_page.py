@@ -74,7 +74,7 @@ def response_page(title: str, curves: ResponseCurves) -> str:
             raise ValueError(
                 f"{curve.name} has {len(curve.values)} values for {len(curves.times)} times; give one a time"
             )
-    figures = [drawn("curves", _figure(curves))]
+    figures = [drawn("curves", response_figure(curves))]
     return render("response.html.j2", {"figures": figures}, title=title, curves=curves.curves)
 
 
@@ -91,13 +91,19 @@ def write_response(response: SimulatedResponse, out: Path) -> Path:
     Raises:
         DiskError: The disk refused.
     """
+    verdict = " ".join(part for part in (str(response.verdict.outcome), response.verdict.text) if part)
+    return save(out, response_page(f"Response: {verdict}", curves_of(response)))
+
+
+def curves_of(response: SimulatedResponse) -> ResponseCurves:
+    """Choose what of a simulated response is drawn: load flows, pressures, spool displacement."""
     table = response.table
     curves = tuple(Curve(name, COLUMNS[name], table[name].tolist()) for name in DRAWN)
-    verdict = " ".join(part for part in (str(response.verdict.outcome), response.verdict.text) if part)
-    return save(out, response_page(f"Response: {verdict}", ResponseCurves(table["time"].tolist(), curves)))
+    return ResponseCurves(table["time"].tolist(), curves)
 
 
-def _figure(response: ResponseCurves) -> go.Figure:
+def response_figure(response: ResponseCurves) -> go.Figure:
+    """Draw a response: a plot a unit, over one axis of time."""
     units = list(dict.fromkeys(curve.unit for curve in response.curves))
     rows = max(1, len(units))
     figure = make_subplots(rows=rows, cols=1, shared_xaxes=True, vertical_spacing=0.25 / rows)

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import moocore
 import numpy as np
 from numpy.typing import NDArray
 
@@ -113,6 +112,8 @@ _Points = tuple[FloatArray, FloatArray]
 
 def _joined(front: _Points, fresh: _Points) -> _Points:
     """Return the non-dominated of a front and of a few points more, the first of equals."""
+    import moocore  # noqa: PLC0415 (late: it brings ssl and email with it)
+
     X, F = (part[moocore.is_nondominated(fresh[1])] for part in fresh)
     new = np.array([not _all_of(np.less_equal, front[1], point).any() for point in F], dtype=bool)
     held = np.ones(len(front[1]), dtype=bool)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import comb
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from divideropt.models.base import FloatArray
 
@@ -46,7 +46,7 @@ class DirectionSequence:
             random: Scrambles the sequence, and picks the objectives of which an edge asks nothing.
         """
         self._objectives, self._random = objectives, random
-        self._sequence = qmc.Sobol(objectives - 1, rng=random) if objectives > 1 else None
+        self._sequence = scipy.stats.qmc.Sobol(objectives - 1, rng=random) if objectives > 1 else None
 
     def draw(self, count: int) -> FloatArray:
         """Return the next directions, shape (count, objectives); the count is a power of two."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import Bounds, NonlinearConstraint, minimize
+import scipy
 
 from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace, Told
@@ -28,9 +28,6 @@ PRECISION = 1e-5
 
 ITERATIONS = 50
 """Most iterations of either."""
-
-_MINIMIZE: Any = minimize
-"""SciPy's stubs have no words for arrays of one length that they do not know."""
 
 
 @dataclass(frozen=True)
@@ -88,11 +85,12 @@ def attain(
         of_gamma = np.concatenate([np.ones(k), np.zeros(len(of_G))])
         return np.column_stack([np.concatenate([-of_parts / unit, -of_G]), of_gamma])
 
-    bounds = Bounds(np.append(np.zeros(d), -np.inf), np.append(np.ones(d), np.inf), keep_feasible=True)
+    bounds = scipy.optimize.Bounds(np.append(np.zeros(d), -np.inf), np.append(np.ones(d), np.inf), keep_feasible=True)
+    minimize: Any = scipy.optimize.minimize  # whose stubs have no words for arrays of a length they do not know
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a step that led nowhere: the archive knows what came out
         if by == "slsqp":
-            _MINIMIZE(
+            minimize(
                 value,
                 np.append(u, 1.0),
                 jac=gradient,
@@ -102,13 +100,13 @@ def attain(
                 options={"maxiter": ITERATIONS, "ftol": PRECISION},
             )
         else:
-            _MINIMIZE(
+            minimize(
                 value,
                 np.append(u, 1.0),
                 jac=gradient,
                 method="trust-constr",
                 bounds=bounds,
-                constraints=NonlinearConstraint(slack, 0.0, np.inf, jac=slack_slopes),
+                constraints=scipy.optimize.NonlinearConstraint(slack, 0.0, np.inf, jac=slack_slopes),
                 options={"maxiter": ITERATIONS, "xtol": PRECISION, "initial_tr_radius": 0.1},
             )
 

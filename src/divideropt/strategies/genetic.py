@@ -1,22 +1,13 @@
 """A genetic algorithm on one aggregate objective, as the thesis ran (section 3.5.2, C.4)."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
-from pymoo.algorithms.soo.nonconvex.ga import GA, comp_by_cv_and_fitness
-from pymoo.core.crossover import Crossover
-from pymoo.core.population import Population
-from pymoo.operators.selection.tournament import TournamentSelection
 
 from divideropt.models.base import FloatArray
 from divideropt.problem import AGGREGATES, Problem
-from divideropt.strategies.ask_tell import drive
 from divideropt.strategies.base import STRICT, AggregateName, Count, Evaluate
-
-CROSSOVER_RETRIES = 10
-"""How often a child outside the bounds is drawn again, the second number of C.4's `heuristicXover` options."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -44,6 +35,12 @@ class Genetic:
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Breed generation after generation; see `Strategy.run`."""
+        from pymoo.algorithms.soo.nonconvex.ga import GA, comp_by_cv_and_fitness  # noqa: PLC0415 (late: pymoo takes a third of a second)
+        from pymoo.operators.selection.tournament import TournamentSelection  # noqa: PLC0415
+
+        from divideropt.strategies.ask_tell import drive  # noqa: PLC0415
+        from divideropt.strategies.crossover import HeuristicCrossover  # noqa: PLC0415
+
         aggregate = AGGREGATES[self.aggregate]
 
         def score(designs: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -56,29 +53,3 @@ class Genetic:
             crossover=HeuristicCrossover(),
         )
         drive(algorithm, problem.space, (1, problem.constraint_count), score, self.generations, seed)
-
-
-class HeuristicCrossover(Crossover):  # type: ignore[misc]
-    """One child beyond the better parent, on the line from the worse; the other is the better parent."""
-
-    def __init__(self) -> None:
-        """Two parents, two children, every time."""
-        super().__init__(n_parents=2, n_offsprings=2, prob=1.0)
-
-    def do(self, problem: Any, pop: Any, *args: Any, **kwargs: Any) -> Population:
-        """Cross pairs, the better parent first."""
-        ranked = [sorted(pair, key=lambda parent: (parent.CV[0], parent.F[0])) for pair in pop]
-        return super().do(problem, ranked, *args, **kwargs)
-
-    def _do(
-        self, problem: Any, X: FloatArray, *args: Any, random_state: np.random.Generator, **kwargs: Any
-    ) -> FloatArray:
-        better, worse = X
-        child = better.copy()
-        pending = np.ones(len(better), dtype=bool)
-        for _ in range(CROSSOVER_RETRIES):
-            trial = better + random_state.random((len(better), 1)) * (better - worse)
-            inside = ((trial >= problem.xl) & (trial <= problem.xu)).all(axis=1)
-            child[pending & inside] = trial[pending & inside]
-            pending &= ~inside
-        return np.stack([child, better])

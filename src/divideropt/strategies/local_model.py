@@ -10,8 +10,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import Bounds, minimize
 
 from divideropt.models.base import FloatArray
 
@@ -32,9 +32,6 @@ STEP_ITERATIONS = 12
 
 STEP_PRECISION = 1e-5
 """Gain in the logarithm of λ at which SLSQP stops."""
-
-_MINIMIZE: Any = minimize
-"""SciPy's stubs have no words for arrays of one length that they do not know."""
 
 
 @dataclass(frozen=True)
@@ -102,12 +99,13 @@ class LocalModel:
 
         gradient = np.zeros(len(lower) + 1)
         gradient[-1] = 1.0
-        found = _MINIMIZE(
+        minimize: Any = scipy.optimize.minimize  # whose stubs have no words for arrays of a length they do not know
+        found = minimize(
             lambda v: v[-1],
             np.append(np.zeros(len(lower)), begin),
             jac=lambda _: gradient,
             method="SLSQP",
-            bounds=Bounds(np.append(lower, -np.inf), np.append(upper, np.inf)),
+            bounds=scipy.optimize.Bounds(np.append(lower, -np.inf), np.append(upper, np.inf)),
             constraints={"type": "ineq", "fun": slack, "jac": slack_slopes},
             options={"maxiter": STEP_ITERATIONS, "ftol": STEP_PRECISION},
         )

@@ -17,7 +17,6 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import Problem, Told
 from divideropt.strategies.archive import Archive, reached
 from divideropt.strategies.base import STRICT, BudgetSpentError, Count, Evaluate, within_budget
-from divideropt.strategies.breeding import Breeding, survivors
 from divideropt.strategies.directions import DirectionSequence, reference_directions
 from divideropt.strategies.polishing import Polisher
 
@@ -78,11 +77,13 @@ class _Search:
     """The population, the archive and the models of one run."""
 
     def __init__(self, problem: Problem, evaluate: Evaluate, population: int, seed: int) -> None:
+        from divideropt.strategies.breeding import Breeding, survivors  # noqa: PLC0415 (late: pymoo takes a third of a second)
+
         random = np.random.default_rng(seed)
         self._space, self._random, self._size = problem.space, random, population
         self._archive = Archive(problem, evaluate)
         self._polisher = Polisher(problem.space)
-        self._breeding = Breeding(problem.space, random)
+        self._breeding, self._survivors = Breeding(problem.space, random), survivors
         self._directions = DirectionSequence(len(problem.objectives), random)
         self._gauge = reference_directions(len(problem.objectives), max(GAUGE, len(problem.objectives)))
         self._pool: list[tuple[FloatArray, Told]] = []
@@ -122,7 +123,7 @@ class _Search:
         X = np.concatenate([designs for designs, _ in self._pool])
         F = np.concatenate([told.F for _, told in self._pool])
         violation = np.concatenate([told.violation for _, told in self._pool])
-        held = survivors(X, F, violation, self._size, self._random)
+        held = self._survivors(X, F, violation, self._size, self._random)
         self._pool = [(held.X, Told(held.F, held.violation[:, None]))]
         children = self._breeding.children(held, self._size)
         if len(children):

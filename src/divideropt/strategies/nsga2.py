@@ -8,7 +8,6 @@ from pydantic.dataclasses import dataclass
 
 from divideropt.problem import Problem
 from divideropt.strategies.base import STRICT, Count, Evaluate
-from divideropt.strategies.breeding import Breeding, survivors
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -30,6 +29,8 @@ class NSGA2:
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Breed generation after generation; see `Strategy.run`."""
+        from divideropt.strategies.breeding import Breeding, survivors  # noqa: PLC0415 (late: pymoo takes a third of a second)
+
         space, random = problem.space, np.random.default_rng(seed)
         breed = Breeding(space, random)
         first = breed.distinct(space.sample(self.population, random))

@@ -6,21 +6,19 @@ whatever the unit; so objectives reach it in scales of their quantities, where 1
 """
 
 from math import comb
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass
-from pymoo.algorithms.moo.nsga3 import NSGA3 as PymooNSGA3  # noqa: N811
-from pymoo.core.population import Population
-from pymoo.operators.selection.tournament import TournamentSelection
-from pymoo.util.reference_direction import UniformReferenceDirectionFactory
 
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
-from divideropt.strategies.ask_tell import drive
 from divideropt.strategies.base import STRICT, Count, Evaluate
+
+if TYPE_CHECKING:
+    from pymoo.core.population import Population
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -52,6 +50,12 @@ class NSGA3:
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Breed generation after generation; see `Strategy.run`."""
+        from pymoo.algorithms.moo import nsga3  # noqa: PLC0415 (late: pymoo takes a third of a second)
+        from pymoo.operators.selection.tournament import TournamentSelection  # noqa: PLC0415
+        from pymoo.util.reference_direction import UniformReferenceDirectionFactory  # noqa: PLC0415
+
+        from divideropt.strategies.ask_tell import drive  # noqa: PLC0415
+
         scales = np.array([o.quantity.scale for o in problem.objectives])
         parts = _parts(len(scales), self.directions)
         directions = UniformReferenceDirectionFactory(len(scales), n_partitions=parts).do()
@@ -60,7 +64,7 @@ class NSGA3:
             told = evaluate(designs)
             return told.F / scales, told.G
 
-        algorithm = PymooNSGA3(
+        algorithm = nsga3.NSGA3(
             directions,
             pop_size=self.population,
             selection=TournamentSelection(func_comp=by_violation_then_chance),
@@ -69,7 +73,7 @@ class NSGA3:
 
 
 def by_violation_then_chance(
-    held: Population, pairs: NDArray[np.intp], random_state: np.random.Generator, **_: Any
+    held: "Population", pairs: NDArray[np.intp], random_state: np.random.Generator, **_: Any
 ) -> NDArray[np.intp]:
     """Play tournaments: less violation wins, else chance.
 

@@ -4,12 +4,9 @@ from typing import Annotated
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
-from pymoo.algorithms.moo.sms import SMSEMOA as PymooSMSEMOA  # noqa: N811
-from pymoo.algorithms.moo.sms import LeastHypervolumeContributionSurvival
 
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
-from divideropt.strategies.ask_tell import drive
 from divideropt.strategies.base import STRICT, Count, Evaluate
 
 
@@ -36,12 +33,15 @@ class SMSEMOA:
 
     def run(self, problem: Problem, evaluate: Evaluate, seed: int) -> None:
         """Breed generation after generation; see `Strategy.run`."""
+        from pymoo.algorithms.moo import sms  # noqa: PLC0415 (late: pymoo takes a third of a second)
+
+        from divideropt.strategies.ask_tell import drive  # noqa: PLC0415
 
         def score(designs: FloatArray) -> tuple[FloatArray, FloatArray]:
             told = evaluate(designs)
             return told.F, told.G
 
         # pymoo's default survival is one object for all runs of a process
-        algorithm = PymooSMSEMOA(pop_size=self.population, survival=LeastHypervolumeContributionSurvival())
+        algorithm = sms.SMSEMOA(pop_size=self.population, survival=sms.LeastHypervolumeContributionSurvival())
         shape = (len(problem.objectives), problem.constraint_count)
         drive(algorithm, problem.space, shape, score, self.generations, seed)

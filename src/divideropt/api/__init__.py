@@ -1,0 +1,29 @@
+"""The commands as functions, for notebooks and scripts: `divideropt.run` is `divideropt run`.
+
+They decide nothing that the commands do not: what they take is checked by the same code, what they raise is worded
+by it, and what they return is read from the same stores. Numbers are SI, percentages in percent; a `DataFrame` says
+the unit, the symbol and the description of each column in `attrs["units"]`, `attrs["symbols"]` and
+`attrs["descriptions"]`.
+"""
+
+from divideropt.api.campaigns import check, run
+from divideropt.api.designs import Simulated, error_budget, evaluate, simulate
+from divideropt.api.stores import Results, open, status, verify
+from divideropt.api.studies import Compared, Study, compare, sensitivity
+
+__all__ = [
+    "Compared",
+    "Results",
+    "Simulated",
+    "Study",
+    "check",
+    "compare",
+    "error_budget",
+    "evaluate",
+    "open",
+    "run",
+    "sensitivity",
+    "simulate",
+    "status",
+    "verify",
+]

@@ -1,0 +1,201 @@
+"""The commands that run a campaign and look at its store: run, status, verify, report."""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from divideropt.cli.output import (
+    AS_JSON,
+    FILE,
+    WORKERS,
+    check_out,
+    load,
+    say,
+    say_when_compiling,
+    write_data,
+    write_json,
+)
+from divideropt.cli.teaching import Taught
+from divideropt.errors import NoFeasibleDesignError
+
+if TYPE_CHECKING:
+    from divideropt.analysis import Convergence, Tally
+    from divideropt.campaign.status import StoreStatus
+    from divideropt.store import Store
+
+# ruff: noqa: PLC0415 (what takes time is imported where it is needed)
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt run campaigns/quickstart.yaml",
+        "divideropt run campaigns/divider.yaml --workers 4 --store results/second",
+        "divideropt run campaigns/divider.yaml           # once more: goes on, or says that all is done",
+        "divideropt run campaigns/divider.yaml --json | jq '.front'",
+    ),
+)
+@click.argument("campaign", type=FILE)
+@click.option("--store", type=FILE, help="Folder of the results; results/NAME where not given.")
+@WORKERS
+@click.option("--fresh", is_flag=True, help="Begin anew; an existing store is moved aside, not deleted.")
+@AS_JSON
+def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as_json: bool) -> None:
+    """Run a campaign, or go on where its store stopped; write fronts and report.
+
+    Runs that are done are not done again, so that the same call is safe whenever it is made. The last line says where
+    the report is.
+    """
+    asked = load(campaign)
+    from divideropt.api.running import run_and_report
+    from divideropt.store import Store
+
+    folder = store or Path("results") / asked.name
+    again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
+    try:
+        done = run_and_report(asked, folder, workers, sys.stderr, again, fresh=fresh)
+    except NoFeasibleDesignError:
+        say(f"report: {Store(folder).report_path}")
+        raise
+    if done.nothing_new:
+        runs = len(done.outcomes.logs)
+        say(f"nothing to do: {runs} of {runs} runs are done; front, verification and KKT residuals are as before")
+    say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.outcomes.front.points} designs)")
+    say(_counted(done.outcomes.front))
+    say(_converged(done.outcomes.kkt))
+    if done.companion is not None:
+        count = f"{done.companion.feasible} of {done.companion.points} designs of its front"
+        say(f"nominal: {count} are feasible in the whole campaign")
+    say(f"report: {done.report}")
+    if as_json:
+        write_json({"store": str(folder), "report": str(done.report), **_status_data(Store(folder))})
+    done.check()
+
+
+@click.command(
+    cls=Taught,
+    examples=("divideropt verify results/divider", "divideropt verify results/divider --workers 4 --json"),
+)
+@click.argument("store", type=FILE)
+@WORKERS
+@AS_JSON
+def verify(store: Path, workers: int | None, as_json: bool) -> None:
+    """Simulate every front point again, far more exactly, and mark the fronts."""
+    import dataclasses
+
+    from divideropt.campaign.verify import verify_store
+    from divideropt.report import write_report
+    from divideropt.store import Store
+
+    say_when_compiling()
+    again = shlex.join(["divideropt", "verify", str(store)])
+    count = verify_store(Store(store), workers, sys.stderr, again)
+    report = write_report(Store(store))
+    say(f"report: {report}")
+    say(_counted(count))
+    if as_json:
+        write_json({"store": str(store), "report": str(report), **dataclasses.asdict(count)})
+
+
+@click.command(
+    cls=Taught,
+    examples=("divideropt status results/divider", "divideropt status results/divider --json | jq '.runs[].best'"),
+)
+@click.argument("store", type=FILE)
+@AS_JSON
+def status(store: Path, as_json: bool) -> None:
+    """Say what a store holds, what is left to do, and the best so far."""
+    from divideropt.campaign.status import read_status
+    from divideropt.store import Store
+
+    if as_json:
+        write_json(_status_data(Store(store)))
+        return
+    found = read_status(Store(store))
+    _say_damage(found)
+    write_data("\n".join(_status_lines(found)) + "\n")
+
+
+@click.command(
+    cls=Taught,
+    examples=("divideropt report results/divider", "divideropt report results/divider --out divider.html"),
+)
+@click.argument("store", type=FILE)
+@click.option("--out", type=FILE, help="Where to write it; report.html in the store where not given.")
+def report(store: Path, out: Path | None) -> None:
+    """Write the HTML report of a store again."""
+    check_out(out, (".html",))
+    from divideropt.report import write_report
+    from divideropt.store import Store
+
+    say_when_compiling()
+    say(f"report: {write_report(Store(store), out)}")
+
+
+def _status_data(store: "Store") -> dict[str, Any]:
+    """Return a store's status as plain data."""
+    import dataclasses
+
+    from divideropt.campaign.status import read_status
+
+    found = read_status(store)
+    _say_damage(found)
+    return dataclasses.asdict(found)
+
+
+def _say_damage(found: "StoreStatus") -> None:
+    if found.damage is not None:
+        say(f"{found.damage}; the numbers here are from the logs")
+
+
+def _status_lines(found: "StoreStatus") -> list[str]:
+    """Word a status, that of the companion after that of its campaign."""
+    verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
+    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
+    lines += [] if found.kkt is None else [_converged(found.kkt)]
+    for item in found.runs:
+        outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
+        best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
+        volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
+        lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        if item.ending is not None:
+            lines.append(f"  ended: {item.ending}")
+        if item.failure is not None:
+            lines.append(f"  incomplete, given up: {item.failure}")
+        if not item.repeatable:
+            lines.append("  not repeatable from scratch: a simulation timed out or crashed")
+    if found.asks_nominal:
+        lines.append(_nominal_line(found))
+        lines += [] if found.nominal is None else [f"nominal: {line}" for line in _status_lines(found.nominal)]
+    return lines
+
+
+def _nominal_line(found: "StoreStatus") -> str:
+    """Say how far the comparison with the companion is."""
+    if found.beside is None:
+        return "nominal: the companion's front is not there yet; `divideropt run` goes on"
+    known, points, feasible = found.beside.known, found.beside.points, found.beside.feasible
+    return f"nominal: {known} of {points} designs of its front simulated in the whole campaign, {feasible} feasible"
+
+
+def _counted(count: "Tally") -> str:
+    """Say how front points came out when they were simulated again."""
+    largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
+    words = f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
+    return f"{words}; largest deviation: {largest}" if largest else words
+
+
+def _converged(kkt: "Convergence") -> str:
+    """Say how near to stationary front points are."""
+    others = f", {kkt.not_defined} not defined" if kkt.not_defined else ""
+    if kkt.median is None:
+        return f"KKT residual of 0 front points{others}"
+    figures = f"median {kkt.median:.2g}, 95th percentile {kkt.high:.2g}"
+    return f"KKT residual of {kkt.computed} front points: {figures}{others}"
+
+
+def _count(number: int | None) -> str:
+    return "no" if number is None else str(number)

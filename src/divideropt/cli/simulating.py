@@ -1,0 +1,100 @@
+"""The commands that simulate designs: simulate, evaluate, error-budget."""
+
+from pathlib import Path
+
+import click
+
+from divideropt.cli.output import FILE, check_out, load, say, write_json, write_table
+from divideropt.cli.teaching import Taught
+
+# ruff: noqa: PLC0415 (what takes time is imported where it is needed)
+
+SET = click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter, such as spool_radius='9 mm'."
+)
+SCENARIO = click.option("--scenario", default="scenario", metavar="NAME", help="One of the campaign's `scenarios`.")
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt simulate --set 'spool_radius=9 mm' --out response.html",
+        "divideropt simulate campaigns/divider.yaml --set 'groove_width=1 mm' > response.csv",
+        "divideropt simulate --set 'spool_radius=9 mm' --json    # every metric and the outcome",
+    ),
+)
+@click.argument("campaign", type=FILE, required=False)
+@SET
+@SCENARIO
+@click.option("--out", type=FILE, help="A .csv, .parquet or .html file; CSV to standard output where not given.")
+@click.option("--json", "as_json", is_flag=True, help="Outcome, parameters and metrics as JSON on standard output.")
+def simulate(
+    campaign: Path | None, settings: tuple[str, ...], scenario: str, out: Path | None, as_json: bool
+) -> None:
+    """Simulate one response: a table, a picture (.html), or its metrics (--json).
+
+    Without CAMPAIGN, the thesis's valve as divider.yaml has it.
+    """
+    asked = load(campaign)
+    check_out(out, (".csv", ".parquet", ".html"))
+    from divideropt.campaign.simulate import response_data
+    from divideropt.campaign.simulate import simulate as simulate_one
+
+    response = simulate_one(asked, settings, scenario)
+    if out is not None and out.suffix == ".html":
+        from divideropt.report import write_response
+
+        write_response(response, out)
+        say(f"picture: {out}")
+    elif out is not None or not as_json:
+        write_table(response.table, out)
+    if as_json:
+        write_json(response_data(response))
+    say(f"outcome: {response.verdict.outcome} {response.verdict.text}".rstrip())
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt evaluate designs.csv > results.csv",
+        "divideropt evaluate designs.csv --campaign campaigns/duty.yaml --out results.parquet",
+    ),
+)
+@click.argument("designs", type=FILE)
+@click.option("--campaign", type=FILE, help="Whose model, scenario and parameters; divider.yaml's where not given.")
+@click.option("--out", type=FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
+def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
+    """Evaluate every design of a CSV file: columns are parameters by name, SI.
+
+    A design that fails is a row like any other, with its outcome. A column `design_id` is passed through.
+    """
+    settings = load(campaign)
+    check_out(out, (".csv", ".parquet"), designs)
+    from divideropt.campaign.designs import evaluate_designs, read_designs
+    from divideropt.campaign.plan import build_model
+
+    model = build_model(settings)
+    asked = read_designs(designs, tuple(model.parameters.values()))
+    write_table(evaluate_designs(asked, model, settings.model.base_parameters()), out)
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt error-budget --set 'spool_radius=9 mm'",
+        "divideropt error-budget campaigns/divider.yaml --out budget.csv",
+    ),
+)
+@click.argument("campaign", type=FILE, required=False)
+@SET
+@SCENARIO
+@click.option("--out", type=FILE, help="A .csv or .parquet file; CSV to standard output where not given.")
+def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str, out: Path | None) -> None:
+    """Say what the steady-state error of one design is made of, in percent."""
+    asked = load(campaign)
+    check_out(out, (".csv", ".parquet"))
+    from divideropt.campaign.budget import budget_table
+
+    table, verdict = budget_table(asked, settings, scenario)
+    write_table(table, out)
+    say(f"outcome: {verdict.outcome} {verdict.text}".rstrip())
