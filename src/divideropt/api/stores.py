@@ -20,7 +20,7 @@ from divideropt.campaign.verify import verify_store
 from divideropt.errors import UsageError
 from divideropt.report import write_report
 from divideropt.report.data import read_report
-from divideropt.report.figures import SELECTION, front_3d, projections
+from divideropt.report.figures import CHOSEN, SELECTION, front_3d, projections
 from divideropt.store import Store
 
 
@@ -119,7 +119,7 @@ class Results:
                 pairs = "; ".join(" and ".join(sorted(pair)) for pair in found) or "none, there is one objective"
                 raise UsageError(f"plot_front: no projection on {x} and {y}; name a pair of objectives: {pairs}")
             figure = found[wanted]
-        figure.data = [trace for trace in figure.data if trace.name != SELECTION]  # which a page would fill
+        figure.data = [trace for trace in figure.data if trace.name not in (SELECTION, CHOSEN)]  # a page fills these
         figure.update_layout(showlegend=True)
         return figure
 

@@ -51,7 +51,7 @@ class Outcomes:
         kkt: How near to stationary they are.
         logs: Each run's log, summed up.
         failures: Why runs were given up, by their names; empty where all came to their end.
-        skipped: The runs that had come to their end before.
+        skipped: The runs that had come to their end before, and were only compared with their logs.
         explored: Points of the front that this call simulated again, or the neighbours of.
     """
 
@@ -114,7 +114,7 @@ class Runner:
         with self._working(problem, fresh) as crew:
             before = self._explored(verifier.schema)
             skipped = self._done(problem)
-            failures = self._drive(problem, crew, skipped)
+            failures = self._drive(problem, crew)
             logs, written = self._write_fronts(problem, verifier, crew, failures)
             combined = written["combined"]
             kkt, count = convergence(combined), tally(combined, verifier.schema)
@@ -135,7 +135,8 @@ class Runner:
         """
         problem = build_problem(self._campaign)
         with self._working(problem, fresh) as crew:
-            return self._drive(problem, crew, self._done(problem))
+            self._done(problem)
+            return self._drive(problem, crew)
 
     @contextmanager
     def _working(self, problem: Problem, fresh: bool) -> Iterator[Crew | None]:
@@ -171,7 +172,11 @@ class Runner:
         schema, runs = TableSchema.of(problem), plan_runs(self._campaign)
         found = tuple(run.name for run in runs if self._has_ended(run, schema))
         if found and len(found) < len(runs):
-            say(f"skipped, since they are done: {len(found)} of {len(runs)} runs ({', '.join(found)})", self._words)
+            names = ", ".join(found)
+            say(
+                f"done before, and only compared with their logs: {len(found)} of {len(runs)} runs ({names})",
+                self._words,
+            )
         return found
 
     def _has_ended(self, run: Run, schema: TableSchema) -> bool:
@@ -187,13 +192,14 @@ class Runner:
         again, around = (kept(schema).table() for kept in (self._store.verification, self._store.optimality))
         return int(again.num_rows + around.num_rows)
 
-    def _drive(self, problem: Problem, crew: Crew | None, skipped: Sequence[str]) -> Mapping[str, str]:
-        """Do the runs but those to be skipped; return why some were given up, by their names."""
-        endings = self._endings(problem, crew, [run for run in plan_runs(self._campaign) if run.name not in skipped])
+    def _drive(self, problem: Problem, crew: Crew | None) -> Mapping[str, str]:
+        """Do the runs; return why some were given up, by their names."""
+        endings = self._endings(problem, crew)
         self._raise_first(endings)
         return {ending.run: ending.failure for ending in endings if ending.failure is not None}
 
-    def _endings(self, problem: Problem, crew: Crew | None, runs: Sequence[Run]) -> list[Ending]:
+    def _endings(self, problem: Problem, crew: Crew | None) -> list[Ending]:
+        runs = plan_runs(self._campaign)
         folder = self._store.status_folder
         with disk_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)
@@ -202,8 +208,6 @@ class Runner:
             for run in runs:  # where this process is alone, an earlier one may have died of the run
                 Mishaps(folder, run.name).forget(deaths=crew is not None)
         self._interruption.check()
-        if not runs:
-            return []
         with Display(folder, {run.name: run.budget for run in runs}, self._words) as display:
             if crew is None:
                 return [self._persist(lambda run: self._work_here(run, problem), run, display) for run in runs]
