@@ -98,7 +98,9 @@ async function draw(figure) {
   element.on("plotly_deselect", () => later(clearSelection));
 }
 
-/** WebGL takes seconds where a processor computes it, so it is drawn, and drawn again, only where it is looked at. */
+const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action) : setTimeout(action, 1000));
+
+/** WebGL takes seconds where a processor computes it: it is drawn when it is looked at or all else is done, and again only where it is looked at. */
 function drawWhenSeen(figure, able) {
   const element = byId(figure.id);
   if (!able) return leaveOut(element);

@@ -47,6 +47,7 @@ async function begin() {
     });
   }
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
+  if (able) for (const figure of pictures) whenIdle(() => see(figure)); // for who scrolls quickly, and for pictures of the page
 }
 
 begin();
