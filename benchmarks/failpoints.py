@@ -23,7 +23,7 @@ from unittest import mock
 
 import pandas as pd
 
-from divideropt.campaign import neighbourhood
+from divideropt.campaign import batches
 from divideropt.cli import commands
 from divideropt.store import parts
 
@@ -99,7 +99,7 @@ def main() -> None:
     every = parser.parse_args().every
     parts.FLUSH_ROWS, parts.FLUSH_SECONDS = 20, 1e9  # several parts, none of them by the clock
     # the toy dies of no design, so its neighbours need no process of their own, which would take a second to start
-    unguarded = mock.patch.object(neighbourhood, "dividers", lambda model: [model])
+    unguarded = mock.patch.object(batches, "dividers", lambda model: [model])
     with unguarded, tempfile.TemporaryDirectory() as folder:
         lost = sum(not enumerate_steps(scenario, Path(folder), every) for scenario in scenarios(Path(folder)))
         sys.exit(1 if lost else 0)
