@@ -79,9 +79,20 @@ def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) ->
     mouse.up()
 
 
+STILL = """async (selector) => {
+  const place = () => JSON.stringify(document.querySelector(selector).getBoundingClientRect());
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  for (let still = 0, last = place(); still < 5; last = place()) {
+    await frame();
+    still = place() === last ? still + 1 : 0;
+  }
+}"""
+"""Waits until an element has not moved for five frames: what follows a selection is drawn later, and moves others."""
+
+
 def into_view(found: Opened, selector: str) -> None:
     found.page.locator(selector).evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
-    found.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    found.page.evaluate(STILL, selector)
 
 
 def brush(found: Opened, axis: int, begin: float, end: float) -> None:
