@@ -167,7 +167,7 @@ def sheet_data(found: Sheet) -> dict[str, Any]:
         "campaign": found.campaign,
         "design": found.design or None,
         "step": found.step,
-        "rounded": list(found.names) if found.rounded is not None else [],
+        "rounded_dimensions": list(found.names) if found.rounded is not None else [],
         **{f"{name}s": entries for name, entries in sections.items()},
         **{
             title: {

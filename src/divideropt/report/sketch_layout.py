@@ -23,7 +23,7 @@ TALLEST, TALLEST_DETAIL = 300.0, 190.0
 ROW, FIRST = 25.0, 20.0
 """Between dimension lines, and from the outline to the first [px]."""
 
-BESIDE = 118.0
+BESIDE = 126.0
 """Kept free on a side with a label [px]."""
 
 TITLE, FOOT, MARGIN = 34.0, 44.0, 14.0

@@ -9,7 +9,7 @@ import numpy as np
 from divideropt.campaign.plan import dimensioned
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
-from divideropt.report.display import DIGITS, rounded
+from divideropt.report.display import rounded
 from divideropt.report.front import Design
 from divideropt.report.sketch_layout import Drawing, lay_out
 
@@ -82,7 +82,7 @@ def sketch_payload(found: Sketches, ids: Iterable[str]) -> dict[str, Any]:
             stored.append({"of": of, "times": float(column[0] / kept[of][0])})
         else:
             kept[place] = column
-            stored.append([rounded(value, DIGITS) for value in column.tolist()])
+            stored.append([rounded(value) for value in column.tolist()])
     return {
         "width": drawing.width,
         "height": drawing.height,

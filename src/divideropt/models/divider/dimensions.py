@@ -80,8 +80,8 @@ _TABLE = (
             "drawn_stem": "",
             "groove_rise": "",
             "groove_run": "",
-            "groove_floor_rise": "",
-            "groove_floor_run": "",
+            "groove_depth_rise": "",
+            "groove_depth_run": "",
         }.items()
     ),
 )
@@ -166,7 +166,7 @@ def _drawn(p: Mapping[str, FloatArray], spool_length: FloatArray) -> dict[str, F
     outer = np.minimum(2.0 * p["land_distance"], lands / 2.0)
     chamber = np.minimum(p["chamber_length"], (spool_length - lands) / 2.0)
     half = np.minimum(p["groove_angle"], math.pi) / 2.0
-    floor = p["spool_radius"] - math.sqrt(3.0) / 2.0 * p["groove_width"]
+    depth = math.sqrt(3.0) / 2.0 * p["groove_width"]
     return {
         "drawn_outer_land": outer,
         "drawn_distance": outer / 2.0,
@@ -175,6 +175,6 @@ def _drawn(p: Mapping[str, FloatArray], spool_length: FloatArray) -> dict[str, F
         "drawn_stem": (spool_length - lands) / 2.0 - chamber,
         "groove_rise": p["spool_radius"] * np.sin(half),
         "groove_run": p["spool_radius"] * np.cos(half),
-        "groove_floor_rise": floor * np.sin(half),
-        "groove_floor_run": floor * np.cos(half),
+        "groove_depth_rise": depth * np.sin(half),
+        "groove_depth_run": depth * np.cos(half),
     }

@@ -110,7 +110,7 @@ def _spool() -> View:
 def _section() -> View:
     radius, stem = the("spool_diameter") * 0.5, the("stem_diameter") * 0.5
     rise, run = the("groove_rise"), the("groove_run")
-    low, deep = the("groove_floor_rise"), the("groove_floor_run")
+    low, deep = rise - the("groove_depth_rise"), run - the("groove_depth_run")
     floor = radius - the("groove_depth")
     land = (
         Step((run, -rise)),
@@ -147,7 +147,7 @@ def _groove() -> View:
         Measure("groove_width", (-half, _ZERO), (half, _ZERO), "above"),
         Measure("groove_depth", (_ZERO, _ZERO), (_ZERO, depth), "right"),
     )
-    return View("Pilot groove", shapes, measures, notes=("groove_area",), scale=10.0)
+    return View("Pilot groove", shapes, measures, scale=10.0)
 
 
 def _port() -> View:
