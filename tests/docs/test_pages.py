@@ -12,7 +12,7 @@ from following import ROOT, agrees, blocks, follow, here
 
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
-FOLLOWED = ("tutorial.md", "how-to/own-model.md", "how-to/resume.md", "how-to/read-the-store.md")
+FOLLOWED = ("tutorial.md", "how-to/own-model.md", "how-to/resume.md", "how-to/read-the-store.md", "how-to/dimensions.md")
 
 
 def names(pages):
@@ -64,6 +64,10 @@ def test_the_tutorial_leads_where_it_says(followed):
 
 def test_the_store_reads_as_its_page_says(followed, environment):
     do("how-to/read-the-store.md", followed, environment)
+
+
+def test_dimensions_are_listed_as_their_page_says(followed, environment):
+    do("how-to/dimensions.md", followed, environment)
 
 
 @pytest.mark.slow
