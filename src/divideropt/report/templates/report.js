@@ -27,6 +27,7 @@ async function beginSelecting() {
 }
 
 async function begin() {
+  beginScrollers();
   const pictures = report.figures.filter((figure) => figure.webgl);
   if (report.selected) await beginSelecting(); // first: so that the figures are drawn once, with the selection in them
   for (const figure of report.figures) if (!figure.webgl) await draw(figure);
