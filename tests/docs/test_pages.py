@@ -12,7 +12,13 @@ from following import ROOT, agrees, blocks, follow, here
 
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
-FOLLOWED = ("tutorial.md", "how-to/own-model.md", "how-to/resume.md", "how-to/read-the-store.md", "how-to/dimensions.md")
+FOLLOWED = (
+    "tutorial.md",
+    "how-to/own-model.md",
+    "how-to/resume.md",
+    "how-to/read-the-store.md",
+    "how-to/dimensions.md",
+)
 
 
 def names(pages):
