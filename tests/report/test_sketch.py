@@ -17,7 +17,9 @@ from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dimensioned
 from divideropt.campaign.sheet import sheet
 from divideropt.models.dimensions import Dimension, Kind, Measure, Shape, Sketch, View, circle, the
+from divideropt.models.distributions import Uniform
 from divideropt.models.divider import PARAMETERS
+from divideropt.models.uncertain import Source, under_uncertainty
 from divideropt.report.data import ReportData, read_report
 from divideropt.report.page import render_report
 from divideropt.report.sheets import MOST_SIMULATED, read_sheets
@@ -263,3 +265,8 @@ def test_sheets_cost_no_more_than_a_few_simulations(store: Store, data: ReportDa
     assert len(read_sheets(problem, many[:3]).designs) == 1
     named = [replace(design, design_id=f"nsga2-1/{i}") for i, design in enumerate(many)]
     assert len(read_sheets(problem, named).designs) == MOST_SIMULATED // 4
+    sources = (Source("density", Uniform(800.0, 900.0)),)
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED // 8 - 1, 1))
+    assert len(read_sheets(uncertain, named).designs) == 2
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED, 1))
+    assert read_sheets(uncertain, named) is None
