@@ -60,7 +60,7 @@ function drawLine(context, row) {
 }
 
 function cleared(canvas) {
-  const ratio = Math.max(1, window.devicePixelRatio || 1);
+  const ratio = crisp();
   const width = parallel.box.clientWidth;
   canvas.width = width * ratio;
   canvas.height = FRAME.height * ratio;
