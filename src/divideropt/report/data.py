@@ -52,10 +52,11 @@ from divideropt.report.setting import setting_of
 from divideropt.report.sheets import Sheets, read_sheets
 from divideropt.report.sketches import Sketches, read_sketches
 from divideropt.report.study_summary import StudySummary, study_summary
+from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
 
-MOST_DRAWN = 4000
-"""Designs of the front that the figures draw: SVG gets slow beyond."""
+MOST_DRAWN = 10_000
+"""Designs of the front that the figures draw: beyond, the page grows by its ids, and brushes get slow."""
 
 MOST_ROWS = 1000
 """Designs of the front in the page's table."""
@@ -88,6 +89,7 @@ class ReportData:
         kkt: How near to stationary its designs are.
         tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
+        tried: Evaluations of all runs, which the front is drawn against.
         best: The best of each strategy by goal attainment; empty where there are no goals.
         comparison: The strategies compared; None where there is one only, or nothing feasible.
         choosing: Designs of the front that are worth a look; None without a front.
@@ -116,6 +118,7 @@ class ReportData:
     kkt: Convergence
     tolerance: float
     drawn: tuple[int, ...]
+    tried: Tried
     best: tuple[Design, ...]
     comparison: Comparison | None
     choosing: Choosing | None
@@ -205,6 +208,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         convergence(table),
         campaign.verification.tolerance,
         _drawn(front),
+        read_tried(logs),
         best,
         _comparison(facts, logs, problem, reference),
         choosing_of(front, problem.objectives, reference),
