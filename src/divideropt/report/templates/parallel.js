@@ -60,7 +60,7 @@ function drawLine(context, row) {
 }
 
 function cleared(canvas) {
-  const ratio = Math.max(1, window.devicePixelRatio || 1);
+  const ratio = Math.max(onPaper() ? 3 : 1, window.devicePixelRatio || 1);
   const width = parallel.box.clientWidth;
   canvas.width = width * ratio;
   canvas.height = FRAME.height * ratio;
@@ -81,8 +81,14 @@ function drawRows(context, rows, width) {
   }
 }
 
+/** Elsewhere, then copied as one picture: of many lines drawn on a canvas in the page Chromium prints none. */
 function drawAll() {
-  drawRows(cleared(parallel.box.querySelector(".all")), [...Array(drawnDesigns).keys()], 1);
+  const canvas = parallel.box.querySelector(".all");
+  const apart = document.createElement("canvas");
+  drawRows(cleared(apart), [...Array(drawnDesigns).keys()], 1);
+  const context = cleared(canvas);
+  context.resetTransform();
+  context.drawImage(apart, 0, 0);
 }
 
 function drawSelected(rows, active, lead) {
