@@ -55,7 +55,7 @@ def init(file: Path, template: str, with_schema: bool) -> None:
 def check(campaign: Path, as_json: bool) -> None:
     """Read a campaign and say every mistake in it, or what it would run."""
     try:
-        asked = load(campaign)
+        asked = load(campaign, to_simulate=False)
     except FileMistakes as error:
         if as_json:
             found = [{"line": m.line, "column": m.column, "message": m.message} for m in error.mistakes]
