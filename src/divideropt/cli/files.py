@@ -19,7 +19,7 @@ TEMPLATES = ("divider", "quickstart")
     examples=(
         "divideropt init",
         "divideropt init my.yaml --template quickstart",
-        "divideropt init my.yaml --schema    # and its JSON schema beside it, for an editor",
+        "divideropt init valve.yaml --schema    # and its JSON schema beside it, for an editor",
     ),
 )
 @click.argument("file", type=FILE, default=Path("campaign.yaml"))
@@ -46,8 +46,8 @@ def init(file: Path, template: str, with_schema: bool) -> None:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt check campaigns/divider.yaml",
-        "divideropt check campaigns/divider.yaml --json",
+        "divideropt check my.yaml",
+        "divideropt check my.yaml --json",
     ),
 )
 @click.argument("campaign", type=FILE)

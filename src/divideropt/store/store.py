@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from copy import copy
 from datetime import UTC, datetime
+from difflib import get_close_matches
 from pathlib import Path
 
 import pyarrow as pa
@@ -32,6 +33,9 @@ STUDIES = "sensitivity"
 
 LARGEST_CAMPAIGN = 2**22
 """No campaign as resolved is larger [bytes]: a campaign's file may have a quarter of it."""
+
+FEW = 10
+"""So many stores are named where one was looked for in their folder."""
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
@@ -100,7 +104,7 @@ class Store:
             StoreError: It cannot be read.
         """
         if not self.exists:
-            raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
+            raise UsageError(f"{self.folder}: no store there ({self._instead()}")
         try:
             if self.campaign_path.stat().st_size > LARGEST_CAMPAIGN:
                 raise self._campaign_damaged(f"larger than {LARGEST_CAMPAIGN // 2**20} MiB")
@@ -111,6 +115,18 @@ class Store:
         if first != _digest(text):
             raise self._campaign_damaged("changed since it was written")
         return text.decode("utf-8")
+
+    def _instead(self) -> str:
+        """Say why the folder is no store, and what may have been meant."""
+        if self.folder.is_file():
+            return "it is a file); name the folder that `divideropt run` has made of a campaign: results/NAME"
+        inside = sorted(path.parent.name for path in self.folder.glob("*/campaign.yaml"))
+        if inside:
+            return f"no campaign.yaml), but in it: {', '.join(inside[:FEW])}; name one of these"
+        beside = [path.parent.name for path in self.folder.parent.glob("*/campaign.yaml")]
+        meant = get_close_matches(self.folder.name, beside, n=1)
+        hint = f"did you mean {self.folder.with_name(meant[0])}?" if meant else "name the folder of a store"
+        return f"no campaign.yaml); {hint}"
 
     def _campaign_damaged(self, reason: str) -> DamagedFileError:
         return DamagedFileError(f"{self.campaign_path}: damaged ({reason}); restore it, or start anew (--fresh)")
