@@ -34,9 +34,12 @@ SCRIPTS = (
     "parallel.js",
     "brushes.js",
     "closely.js",
+    "sketch.js",
+    "sheet.js",
     "tables.js",
     "bar.js",
     "fragment.js",
+    "scrollers.js",
     "report.js",
 )
 """The page's script in its parts, one idea each; they share one scope, in this order."""
@@ -61,7 +64,7 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
         .get_template(template)
         .render(
             **context,
-            style=Markup(_asset("report.css")),
+            style=Markup(_asset("report.css") + _asset("sketch.css")),
             plotly=Markup(get_plotlyjs()),
             script=Markup(script),
             scripts=" ".join(_hash(text) for text in (get_plotlyjs(), script)),

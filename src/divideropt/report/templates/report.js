@@ -17,6 +17,8 @@ async function beginSelecting() {
   followInTables();
   followInFigures();
   followClosely();
+  followInSketch();
+  followInSheet();
   beginParallel();
   followInBar();
   followInAddress();
@@ -26,7 +28,14 @@ async function beginSelecting() {
   await (restore() ?? clearSelection());
 }
 
+function offerCampaign() { // as it stands in the page, which is what the store has
+  const button = byId("save-campaign");
+  if (button) button.addEventListener("click", () => offer(byId("campaign").textContent, "campaign.yaml", "application/yaml"));
+}
+
 async function begin() {
+  beginScrollers();
+  offerCampaign();
   const pictures = report.figures.filter((figure) => figure.webgl);
   if (report.selected) await beginSelecting(); // first: so that the figures are drawn once, with the selection in them
   for (const figure of report.figures) if (!figure.webgl) await draw(figure);
