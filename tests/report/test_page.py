@@ -205,6 +205,8 @@ def test_hostile_text_stays_text(opened, data):
                 name=HOSTILE,
                 campaign=HOSTILE,
                 front=designs,
+                sketches=None,  # these have a test of their own
+                sheets=None,
                 runs=runs,
                 objectives=objectives,
                 tracks=tracks_of(runs, data.objectives),
