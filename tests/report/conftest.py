@@ -117,8 +117,9 @@ parallel: {{backend: sequential}}
     return make
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
+    """One for all tests of pages; while it is there, `asyncio.run` is refused in this thread."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
         pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
@@ -132,14 +133,15 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Opened]]:
     """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
     folder = tmp_path_factory.mktemp("pages")
 
     def open_page(text: str, script: str = "") -> Opened:
         path = folder / f"{len(list(folder.iterdir()))}.html"
         path.write_text(text, encoding="utf-8")
-        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
+        found = Opened(context.new_page())
         found.page.set_default_timeout(PATIENCE)
         found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
         found.page.on("pageerror", lambda error: found.errors.append(str(error)))
@@ -158,4 +160,5 @@ def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callab
         found.page.wait_for_selector("html[data-drawn]")
         return found
 
-    return open_page
+    yield open_page
+    context.close()
