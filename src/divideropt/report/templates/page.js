@@ -18,6 +18,7 @@ function number(value) {
 }
 
 const onPaper = () => window.matchMedia("print").matches;
+const crisp = () => Math.max(onPaper() ? 3 : 1, window.devicePixelRatio || 1); // pixels of a canvas for one of the page
 const counted = (count, word) => count + " " + word + (count === 1 ? "" : "s");
 
 function make(name, text, attributes) {
@@ -25,4 +26,11 @@ function make(name, text, attributes) {
   if (text !== undefined) element.textContent = text;
   for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
   return element;
+}
+
+/** Give a text to the user as a file. */
+function offer(text, name, kind) {
+  const address = URL.createObjectURL(new Blob([text], { type: kind }));
+  make("a", undefined, { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
 }

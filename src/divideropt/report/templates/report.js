@@ -40,6 +40,9 @@ async function beginSelecting() {
   followInTables();
   followInFigures();
   followClosely();
+  followInSketch();
+  followInSheet();
+  followToggle();
   beginParallel();
   followInBar();
   followInAddress();
@@ -49,12 +52,26 @@ async function beginSelecting() {
   await (restore() ?? clearSelection());
 }
 
+function offerCampaign() { // as it stands in the page, which is what the store has
+  const button = byId("save-campaign");
+  if (button) button.addEventListener("click", () => offer(byId("campaign").textContent, "campaign.yaml", "application/yaml"));
+}
+
 async function begin() {
   beginScrollers();
+  offerCampaign();
   const pictures = report.figures.filter((figure) => figure.webgl);
   if (report.selected) await beginSelecting(); // first: so that the figures are drawn once, with the selection in them
-  for (const figure of report.figures) if (!figure.webgl) await draw(figure);
+  const flat = report.figures.filter((figure) => !figure.webgl);
+  const first = flat.filter((figure) => !report.selected || isDotted(figure) || figure.id === "response");
+  for (const figure of first) await draw(figure);
+  document.documentElement.dataset.ready = Math.round(performance.now()); // for brushes, since the navigation [ms]
+  for (const figure of flat.filter((other) => !first.includes(other))) {
+    await idle();
+    await draw(figure);
+  }
   if (report.quantities) byId("quantity").addEventListener("change", (event) => showQuantity(event.target.value));
+  if (pictures.length && report.selected) await idle();
   const able = pictures.length > 0 && webgl();
   for (const figure of pictures) drawWhenSeen(figure, able);
   for (const media of ["(prefers-color-scheme: dark)", "print"]) {
@@ -71,7 +88,7 @@ async function begin() {
   }
   for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => resizeIn(details));
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
-  if (able) for (const figure of pictures) whenIdle(() => see(figure)); // for who scrolls quickly, and for pictures of the page
+  if (able) for (const figure of pictures) whenQuiet(() => see(figure)); // for who scrolls quickly, and for pictures of the page
 }
 
 begin();
