@@ -55,7 +55,7 @@ FEWEST = 12
 """A small mark has some thirty pixels."""
 
 DIMENSIONLESS = re.compile(
-    r"(least )?[pq]\d|(hypervolume|IGD\+|ε|best max λ|(mean|worst) gap)( \((more|less) is better\))?|evaluations"
+    r"(least )?[pq]\d|(hypervolume|IGD\+|ε|best max λ|(mean|worst) gap)( \((more|less) is better\))?|evaluations.*"
     r"|blocks|KKT residual|share of designs|part of the range.*|Sobol ind.*|μ\*|σ|lost"
 )
 """Axes that need no unit: counts, shares, and what the tests' own models have."""
