@@ -48,6 +48,8 @@ def test_a_table_is_read_whatever_ends_its_lines(tmp_path, begin, end):
         ("x1;x2\n1;2\n", [(1, 1)], "'x1;x2' is no parameter"),
         ("\ufeff\ufeffx1\n1\n", [(1, 1)], "'\\ufeffx1' is no parameter"),
         ("x1,\n1,\n", [(1, 2)], "'' is no parameter"),
+        ("x1,desing_id\n1,2\n", [(1, 2)], "'desing_id' is no parameter; did you mean design_id?"),
+        ("x1,a,b\n1,2,3\n", [(1, 2), (1, 3)], "'b' is no parameter; rename or delete it"),
         ("x1\n1_0e-3\n", [(2, 1)], "x1 is '1_0e-3', not a number"),
         ("x1\n\u0661\n", [(2, 1)], "not a number"),
         ("x1\n\uff11\n", [(2, 1)], "not a number"),

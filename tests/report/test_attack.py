@@ -16,9 +16,13 @@ from divideropt.campaign.runner import Runner
 from divideropt.errors import StoreError
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
 from divideropt.report import Curve, ResponseCurves, response_page, write_report
+from divideropt.report.convergence import tracks_of
 from divideropt.report.data import read_report
 from divideropt.report.display import Shown
+from divideropt.report.failing import Bound
+from divideropt.report.headline import headline_of
 from divideropt.report.page import render_report
+from divideropt.report.provenance import Provenance
 
 ATTACKS = (
     "</script><script>window.hacked=1</script>",
@@ -131,7 +135,11 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         responses=responses,
         runs=tuple(
             replace(
-                run, name=hostile, strategy=hostile, examples=dict.fromkeys(run.outcomes, hostile), ending=hostile
+                run,
+                name=hostile,
+                strategy=hostile + run.strategy,
+                examples=dict.fromkeys(run.outcomes, hostile),
+                ending=hostile,
             )
             for run in data.runs
         ),
@@ -141,8 +149,17 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         setting=((hostile, hostile),),
         constraints=(hostile,),
         notes=(hostile,),
-        versions={hostile: hostile},
+        provenance=Provenance({hostile: hostile}, ({hostile: hostile},), ((hostile, hostile),), hostile),
     )
+    runs, along = changed.runs, data.failing.along
+    tracks = tracks_of(runs, changed.objectives)
+    failing = replace(
+        data.failing,
+        along=tuple(replace(one, axis=_hostile(one.axis, hostile)) for one in along),
+        bounds=(Bound(hostile, 1, 1),),
+    )
+    headline = headline_of(changed.front, changed.best, changed.objectives)
+    changed = replace(changed, tracks=tracks, failing=failing, headline=headline)
     found = opened(render_report(changed), NO_WEBGL)
     assert "window.hacked" in found.page.locator("#response .legend").text_content()
     assert found.page.evaluate(LEFT_BEHIND) == CLEAN

@@ -12,6 +12,7 @@ from browsing import NO_WEBGL, Opened, borne_out, quiet
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.simulate import simulate
 from divideropt.report import Curve, ResponseCurves, response_page, write_response
+from divideropt.report.convergence import tracks_of
 from divideropt.report.data import ReportData
 from divideropt.report.page import render_report
 
@@ -89,8 +90,9 @@ def test_the_parallel_coordinates_are_drawn(report, data):
     assert report.page.evaluate(COUNT_COLOURS, picture) > 100
 
 
-def test_each_run_has_a_line_of_hypervolume(report, data):
-    assert report.count("#hypervolume .scatterlayer path.js-line") == len(data.runs)
+@pytest.mark.parametrize("track", ["hypervolume", "attainment"])
+def test_each_run_has_a_line_of_convergence(report, data, track):
+    assert report.count(f"#{track} .scatterlayer path.js-line") == len(data.runs), "each is its strategy's only one"
 
 
 def test_each_strategy_has_a_line_of_residuals(report, data):
@@ -193,8 +195,8 @@ def test_without_webgl_a_sentence_stands_for_the_picture(flat, data):
 
 
 def test_hostile_text_stays_text(opened, data):
-    designs = tuple(replace(d, design_id=HOSTILE + d.design_id, strategy=LINK) for d in data.front)
-    runs = tuple(replace(run, name=HOSTILE + LINK, strategy=LINK) for run in data.runs)
+    designs = tuple(replace(d, design_id=HOSTILE + d.design_id, strategy=LINK + d.strategy) for d in data.front)
+    runs = tuple(replace(run, name=HOSTILE + LINK, strategy=LINK + run.strategy) for run in data.runs)
     objectives = tuple(replace(o, axis=replace(o.axis, words=HOSTILE + LINK, symbol=LINK)) for o in data.objectives)
     found = opened(
         render_report(
@@ -205,6 +207,7 @@ def test_hostile_text_stays_text(opened, data):
                 front=designs,
                 runs=runs,
                 objectives=objectives,
+                tracks=tracks_of(runs, data.objectives),
                 notes=(HOSTILE,),
             )
         ),

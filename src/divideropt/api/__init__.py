@@ -8,7 +8,7 @@ the unit, the symbol and the description of each column in `attrs["units"]`, `at
 
 from divideropt.api.campaigns import check, run
 from divideropt.api.designs import Simulated, error_budget, evaluate, simulate
-from divideropt.api.stores import Results, open, status, verify
+from divideropt.api.stores import Results, export, open, status, verify
 from divideropt.api.studies import Compared, Study, compare, sensitivity
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "compare",
     "error_budget",
     "evaluate",
+    "export",
     "open",
     "run",
     "sensitivity",

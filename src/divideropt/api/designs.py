@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from divideropt.api.frames import modelled_frame
 from divideropt.api.given import Given, campaign_given
 from divideropt.campaign.budget import budget_table
-from divideropt.campaign.designs import evaluate_designs, parse_designs, read_designs
+from divideropt.campaign.designs import evaluate_designs, parse_designs, read_designs, result_columns
 from divideropt.campaign.plan import build_model
 from divideropt.campaign.simulate import COLUMNS, SimulatedResponse
 from divideropt.campaign.simulate import simulate as simulate_one
@@ -138,7 +138,8 @@ def evaluate(designs: pd.DataFrame | Path | str, campaign: Given | None = None) 
     """Evaluate every design of a table; `divideropt evaluate`.
 
     Args:
-        designs: A DataFrame, or a CSV file: columns are parameters by name, SI; `design_id` is passed through.
+        designs: A DataFrame, a front say, or a CSV file: columns are parameters by name, SI; `design_id` is passed
+            through, and columns of results are passed over.
         campaign: Whose model, scenario and parameters; the one that ships with the package where not given.
 
     Returns:
@@ -151,11 +152,11 @@ def evaluate(designs: pd.DataFrame | Path | str, campaign: Given | None = None) 
     """
     asked = campaign_given(campaign)
     model = build_model(asked)
-    parameters = tuple(model.parameters.values())
+    parameters, results = tuple(model.parameters.values()), result_columns(model)
     if isinstance(designs, pd.DataFrame):
-        read = parse_designs(designs.to_csv(index=False), "designs", parameters)
+        read = parse_designs(designs.to_csv(index=False), "designs", parameters, results)
     else:
-        read = read_designs(Path(designs), parameters)
+        read = read_designs(Path(designs), parameters, results)
     table = evaluate_designs(read, model, asked.model.base_parameters())
     return modelled_frame(table, model.parameters, model.quantities)
 

@@ -13,6 +13,7 @@ from divideropt.api.frames import stored_frame
 from divideropt.api.given import listen
 from divideropt.campaign.beside import Side
 from divideropt.campaign.config import Campaign
+from divideropt.campaign.export import export_store
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import plan_runs
 from divideropt.campaign.status import StoreStatus, read_status
@@ -163,6 +164,10 @@ class Results:
         """
         return write_report(self._store, None if out is None else Path(out))
 
+    def export(self, format: str = "csv", out: Path | str | None = None) -> Path:
+        """Write evaluations and fronts as tables into a folder of their own; see `divideropt.export`."""
+        return export_store(self._store, format, None if out is None else Path(out)).folder
+
     def _check_run(self, run: str, *others: str) -> None:
         known = [*others, *(planned.name for planned in plan_runs(self.campaign))]
         if run not in known:
@@ -187,6 +192,26 @@ def status(store: Path | str) -> StoreStatus:
         StoreError: It is damaged.
     """
     return Results(store).status()
+
+
+def export(store: Path | str, format: str = "csv", out: Path | str | None = None) -> Path:
+    """Write a store's evaluations and fronts as tables into a folder of their own; `divideropt export`.
+
+    Args:
+        store: Its folder.
+        format: csv or parquet.
+        out: A folder that is not there yet; `<store>-csv` or `<store>-parquet` where not given.
+
+    Returns:
+        The folder: `evaluations`, `fronts/<name>`, and with CSV `columns.csv`, which says unit, symbol, role and
+        description of each column; parquet has them in each column's metadata. SI, percentages in percent.
+
+    Raises:
+        UsageError: There is no store, the format is neither, or the folder is there already.
+        StoreError: A log or a front is damaged; nothing is written.
+        DiskError: The disk refused; nothing is written.
+    """
+    return Results(store).export(format, out)
 
 
 def verify(store: Path | str, *, workers: int | None = None, words: TextIO | None = None) -> Tally:

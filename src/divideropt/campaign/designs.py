@@ -3,7 +3,7 @@
 import csv
 import io
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,12 +11,13 @@ import numpy as np
 import pandas as pd
 
 from divideropt.campaign.reader import MOST_MISTAKES
-from divideropt.campaign.sections import show
+from divideropt.campaign.sections import nearest, show
 from divideropt.campaign.textfile import read_text_file
 from divideropt.errors import FileMistakes, Mistake, UsageError
 from divideropt.models import Model, Parameter
 from divideropt.models.base import FloatArray
 from divideropt.problem import simulate
+from divideropt.store.schema import STORED, deviation_of
 from divideropt.units import parse_number
 
 IDENTITY = "design_id"
@@ -37,19 +38,22 @@ class Designs:
         given: The parameters that have a column, in the file's order.
         values: One row a design, one column each, in the parameters' units, shape (n, len(given)).
         identities: The column `design_id`, or None.
+        passed_over: The columns that say what came out of a design before, of which nothing was read.
     """
 
     given: tuple[str, ...]
     values: FloatArray
     identities: tuple[str, ...] | None
+    passed_over: tuple[str, ...] = ()
 
 
-def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
+def read_designs(path: Path, parameters: Sequence[Parameter], results: Collection[str] = ()) -> Designs:
     """Read a CSV file whose columns are parameters by name, in the parameters' units.
 
     Args:
         path: The file.
         parameters: What may be a column.
+        results: What may be a column too, and is passed over: `result_columns` of the model.
 
     Returns:
         The designs in the file's order.
@@ -61,10 +65,15 @@ def read_designs(path: Path, parameters: Sequence[Parameter]) -> Designs:
     text = read_text_file(path, LARGEST_FILE, "table of designs")
     if not text.strip():
         raise UsageError(f"{path}: the file is empty; its first line must name the columns")
-    return parse_designs(text, str(path), parameters)
+    return parse_designs(text, str(path), parameters, results)
 
 
-def parse_designs(text: str, path: str, parameters: Sequence[Parameter]) -> Designs:
+def result_columns(model: Model) -> frozenset[str]:
+    """Name the columns that a table has once its designs were simulated, in a store or by `divideropt evaluate`."""
+    return frozenset((*STORED, *model.quantities, *map(deviation_of, model.quantities)))
+
+
+def parse_designs(text: str, path: str, parameters: Sequence[Parameter], results: Collection[str] = ()) -> Designs:
     """Read designs from CSV; `path` names it in mistakes. Otherwise as `read_designs`.
 
     Every cell is data: of `design_id` any text, a formula too, and of a parameter a plain decimal number.
@@ -72,8 +81,8 @@ def parse_designs(text: str, path: str, parameters: Sequence[Parameter]) -> Desi
     known = {p.name: p for p in parameters}
     rows = _rows(text, path)
     _, header = next(rows)
-    _check_header(path, header, known)
-    given = tuple(name for name in header if name != IDENTITY)
+    _check_header(path, header, known, results)
+    given = tuple(name for name in header if name in known)
     values, identities = array("d"), []
     mistakes: list[Mistake] = []
     for line, row in rows:
@@ -85,7 +94,8 @@ def parse_designs(text: str, path: str, parameters: Sequence[Parameter]) -> Desi
     if mistakes:
         raise FileMistakes(path, mistakes)
     matrix = np.array(values, dtype=np.float64).reshape(-1, len(given)) if given else np.empty((len(identities), 0))
-    return Designs(given, matrix, tuple(identities) if IDENTITY in header else None)
+    passed = tuple(name for name in header if name not in known and name in results)
+    return Designs(given, matrix, tuple(identities) if IDENTITY in header else None, passed)
 
 
 def evaluate_designs(designs: Designs, model: Model, fixed: dict[str, float]) -> pd.DataFrame:
@@ -139,7 +149,7 @@ def _lines(text: str, path: str) -> Iterator[str]:
         yield line
 
 
-def _check_header(path: str, header: list[str], known: dict[str, Parameter]) -> None:
+def _check_header(path: str, header: list[str], known: Mapping[str, Parameter], results: Collection[str]) -> None:
     if not header:
         raise FileMistakes(path, [Mistake(1, 1, "the first line is blank, and must name the columns; delete it")])
     mistakes: list[Mistake] = []
@@ -152,8 +162,10 @@ def _check_header(path: str, header: list[str], known: dict[str, Parameter]) -> 
             mistakes.append(
                 Mistake(1, column, f"the column {show(name)} is here a second time; delete one of the two")
             )
-        elif name not in known and name != IDENTITY:
-            sentence = f"the column {show(name)} is no parameter; use {IDENTITY}, or one of {', '.join(known)}"
+        elif name not in known and name != IDENTITY and name not in results:
+            meant = nearest(name, (IDENTITY, *known))
+            listed = f"use {IDENTITY}, or one of {', '.join(known)}" if not mistakes else "rename or delete it"
+            sentence = f"the column {show(name)} is no parameter; {f'did you mean {meant}?' if meant else listed}"
             mistakes.append(Mistake(1, column, sentence))
         seen.add(name)
     if mistakes:
@@ -175,6 +187,8 @@ def _read_row(
         if name == IDENTITY:
             if "\0" in cell:
                 mistakes.append(Mistake(line, column, f"{IDENTITY} has the character U+0000 in it; delete it"))
+            continue
+        if name not in known:  # a result
             continue
         try:
             numbers.append(_read_cell(known[name], cell))

@@ -124,12 +124,18 @@ def collect(value: object, names: Iterable[K], what: str, read: Callable[[K, obj
 def unknown(what: str, name: str, names: Iterable[str]) -> str:
     """Say that a name is not known, and which are."""
     known = list(names)
-    close = difflib.get_close_matches(name[:60], known[:MOST_COMPARED], n=1)
-    if close:
-        return f"the {what} {show(name)} is not known; did you mean {close[0]}?"
+    close = nearest(name, known)
+    if close is not None:
+        return f"the {what} {show(name)} is not known; did you mean {close}?"
     if len(known) > FEW:
         return f"the {what} {show(name)} is not known; `divideropt schema` lists the {len(known)} that are"
     return f"the {what} {show(name)} is not known; use {'one of ' * (len(known) > 1)}{', '.join(known)}"
+
+
+def nearest(name: str, names: Iterable[str]) -> str | None:
+    """Return the name that somebody may have meant who wrote another; None where there is none like it."""
+    close = difflib.get_close_matches(name[:60], list(names)[:MOST_COMPARED], n=1)
+    return close[0] if close else None
 
 
 def show(value: object) -> str:

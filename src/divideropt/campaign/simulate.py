@@ -11,6 +11,7 @@ import pandas as pd
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.plan import build_model, dividers
+from divideropt.campaign.sections import nearest
 from divideropt.errors import UsageError
 from divideropt.models import Outcome, Verdict
 from divideropt.models.base import FloatArray
@@ -173,7 +174,9 @@ def _read(setting: str) -> tuple[str, float]:
     if not equals:
         raise UsageError(f"--set {setting}: there is no =; write NAME=VALUE, such as spool_radius='9 mm'")
     if name not in PARAMETERS:
-        raise UsageError(f"--set {setting}: {name!r} is no parameter; use one of {', '.join(PARAMETERS)}")
+        meant = nearest(name, PARAMETERS)
+        remedy = f"did you mean {meant}?" if meant else f"use one of {', '.join(PARAMETERS)}"
+        raise UsageError(f"--set {setting}: {name!r} is no parameter; {remedy}")
     parameter = PARAMETERS[name]
     try:
         value = parse_measure(text.strip(), parameter.unit)

@@ -1,4 +1,4 @@
-"""The commands that run a campaign and look at its store: run, status, verify, report."""
+"""The commands that run a campaign and look at its store: run, status, verify, report, export."""
 
 import shlex
 import sys
@@ -133,6 +133,43 @@ def report(store: Path, out: Path | None) -> None:
 
     say_when_compiling()
     say(f"report: {write_report(Store(store), out)}")
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt export results/divider --format csv",
+        "divideropt export results/divider --format parquet --out tables",
+    ),
+)
+@click.argument("store", type=FILE)
+@click.option(
+    "--format", "kind", type=click.Choice(["csv", "parquet"]), default="csv", show_default=True, help="Of the tables."
+)
+@click.option("--out", type=FILE, help="A folder that is not there yet; STORE-csv or STORE-parquet where not given.")
+@AS_JSON
+def export(store: Path, kind: str, out: Path | None, as_json: bool) -> None:
+    """Write a store's evaluations and fronts as tables into a folder of their own.
+
+    \b
+    evaluations  every evaluation, run by run, in the order they were asked for
+    fronts/NAME  the feasible non-dominated designs of each run, and of all: combined
+    columns.csv  unit, symbol, role and description of each column; parquet has them in each column's metadata
+
+    Numbers are SI, percentages in percent, and read back to the bit; what is not defined is empty. An existing folder
+    is never replaced, and the new one appears with all its tables or not at all.
+    """  # noqa: D301 (\b is click's)
+    import dataclasses
+
+    from divideropt.campaign.export import export_store
+    from divideropt.store import Store
+
+    done = export_store(Store(store), kind, out)
+    fronts = ", ".join(f"{name} {count}" for name, count in done.fronts.items())
+    say(f"{done.evaluations} evaluations; designs on fronts: {fronts or 'none before the campaign has ended'}")
+    say(f"tables: {done.folder}")
+    if as_json:
+        write_json({**dataclasses.asdict(done), "folder": str(done.folder)})
 
 
 def _status_data(store: "Store") -> dict[str, Any]:

@@ -58,6 +58,7 @@ def simulate(
     examples=(
         "divideropt evaluate designs.csv > results.csv",
         "divideropt evaluate designs.csv --campaign campaigns/duty.yaml --out results.parquet",
+        "divideropt evaluate results/divider-csv/fronts/combined.csv > again.csv    # of a front that `export` wrote",
     ),
 )
 @click.argument("designs", type=FILE)
@@ -66,15 +67,18 @@ def simulate(
 def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
     """Evaluate every design of a CSV file: columns are parameters by name, SI.
 
-    A design that fails is a row like any other, with its outcome. A column `design_id` is passed through.
+    A design that fails is a row like any other, with its outcome. A column `design_id` is passed through, and columns
+    of results, as `export` and this command write them, are passed over.
     """
     settings = load(campaign)
     check_out(out, (".csv", ".parquet"), designs)
-    from divideropt.campaign.designs import evaluate_designs, read_designs
+    from divideropt.campaign.designs import evaluate_designs, read_designs, result_columns
     from divideropt.campaign.plan import build_model
 
     model = build_model(settings)
-    asked = read_designs(designs, tuple(model.parameters.values()))
+    asked = read_designs(designs, tuple(model.parameters.values()), result_columns(model))
+    if asked.passed_over:
+        say(f"{designs}: {len(asked.passed_over)} columns of results are passed over: {asked.passed_over[0]}, …")
     write_table(evaluate_designs(asked, model, settings.model.base_parameters()), out)
 
 

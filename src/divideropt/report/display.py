@@ -166,3 +166,26 @@ def number(value: float, digits: int = DIGITS) -> str:
 def rounded(value: float, digits: int = 5) -> float:
     """Round to significant digits, for numbers that are only drawn."""
     return float(f"{value:.{digits - 1}e}")
+
+
+def grouped(count: int) -> str:
+    """Write a count, its thousands apart from five digits on."""
+    return f"{count:,}".replace(",", "\u202f") if count >= 10_000 else str(count)
+
+
+def brief(count: int) -> str:
+    """Write a count where there is little room, `29.8k`."""
+    size, letter = next(((s, c) for s, c in ((10**6, "M"), (10**3, "k")) if count >= 10 * s), (1, ""))
+    return f"{count / size:.3g}{letter}" if letter else str(count)
+
+
+def share(part: int, whole: int) -> str:
+    """Write a share in percent with two digits; one of none or of all only where it is so."""
+    if part in (0, whole):
+        return "0 %" if part == 0 else "100 %"
+    percent = 100.0 * part / whole
+    if percent < 0.1:
+        return "< 0.1 %"
+    if percent > 99.9:
+        return "> 99.9 %"
+    return f"{percent:.0f} %" if 10.0 <= percent <= 99.0 else f"{percent:.1f} %"

@@ -38,6 +38,7 @@ SCRIPTS = (
     "tables.js",
     "bar.js",
     "fragment.js",
+    "scrollers.js",
     "report.js",
 )
 """The page's script in its parts, one idea each; they share one scope, in this order."""

@@ -1,4 +1,4 @@
-"""Plotly figures of the front and of the runs. Colours of text and grids are the page's, which knows the theme."""
+"""Plotly figures of the front. Colours of text and grids are the page's, which knows the theme."""
 
 import html
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,10 +10,11 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
-from divideropt.report.data import ObjectiveFacts, ReportData
+from divideropt.report.data import ReportData
 from divideropt.report.display import rounded
+from divideropt.report.facts import ObjectiveFacts
 from divideropt.report.front import Design
-from divideropt.report.palette import DASHES, Mark, marks
+from divideropt.report.palette import Mark, marks
 
 MOST_PROJECTIONS = 6
 """Pairs of objectives that are drawn: all of up to four objectives."""
@@ -80,19 +81,6 @@ def projections(data: ReportData) -> list[tuple[tuple[int, int], go.Figure]]:
     """Draw the front on pairs of objectives: the pair, and its figure."""
     pairs = list(combinations(range(len(data.objectives)), 2))[:MOST_PROJECTIONS]
     return [(pair, _projection(data, data.objectives[pair[0]], data.objectives[pair[1]])) for pair in pairs]
-
-
-def hypervolume(data: ReportData) -> go.Figure:
-    """Draw each run's hypervolume against its evaluations."""
-    histories = {run.name: run.hypervolumes for run in data.runs}
-    return _histories(data, histories, "hypervolume", zero=True)
-
-
-def least_objective(data: ReportData) -> go.Figure:
-    """Draw each run's least value of the only objective against its evaluations."""
-    facts = data.objectives[0]
-    histories = {run.name: [facts.axis.scaled(value) for value in run.least] for run in data.runs}
-    return _histories(data, histories, f"least {label(facts)}", zero=False)
 
 
 def residuals(data: ReportData) -> go.Figure:
@@ -189,29 +177,6 @@ def goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[s
     if second.goal is not None:
         at = second.axis.scaled(second.goal)
         yield style | {"y0": at, "y1": at, "x0": 0, "x1": 1, "xref": "paper"}
-
-
-def _histories(data: ReportData, histories: Mapping[str, Sequence[float]], title: str, *, zero: bool) -> go.Figure:
-    figure = go.Figure(layout=layout(height=380, margin={"l": 64, "r": 16, "t": 12, "b": 52}))
-    style = marks(data.strategies)
-    seeds: dict[str, int] = dict.fromkeys(data.strategies, 0)
-    for run in data.runs:
-        dash = DASHES[seeds[run.strategy] % len(DASHES)]
-        seeds[run.strategy] += 1
-        figure.add_scatter(
-            x=list(run.marks),
-            y=[None if value != value else rounded(value) for value in histories[run.name]],  # noqa: PLR0124 (NaN)
-            name=plain(run.name),
-            mode="lines",
-            line={"color": style[run.strategy].colour, "dash": dash, "width": 2},
-            hovertemplate=f"{plain(run.name)}<br>%{{x}} evaluations<br>%{{y:.4~g}}<extra></extra>",
-        )
-    figure.update_xaxes(title_text="evaluations", rangemode="tozero")
-    figure.update_yaxes(title_text=title, rangemode="tozero" if zero else "normal")
-    figure.update_layout(
-        showlegend=True, legend={"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"}
-    )
-    return figure
 
 
 def _by_strategy(data: ReportData) -> Iterator[tuple[str, Mark, list[Design]]]:

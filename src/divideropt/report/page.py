@@ -10,24 +10,24 @@ import numpy as np
 
 from divideropt.analysis import Summary
 from divideropt.report.comparison_figure import comparison_figure
+from divideropt.report.convergence_figure import EARLY, convergence_figure
+from divideropt.report.convergence_tables import convergence_table, unequal
 from divideropt.report.cost_figure import FRONTS, cost_figures, kind_of
 from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
-from divideropt.report.display import Axis, number, rounded
+from divideropt.report.display import Axis, brief, grouped, number, rounded, share
 from divideropt.report.document import drawn, render, save
-from divideropt.report.figures import (
-    front_3d,
-    hypervolume,
-    least_objective,
-    projections,
-    residuals,
-)
+from divideropt.report.failing import FEW
+from divideropt.report.failing_tables import along_table, bounds_table
+from divideropt.report.figures import front_3d, projections, residuals
 from divideropt.report.palette import COLOURS, Mark, marks
+from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.sensitivity_figures import index_bars
 from divideropt.report.step_figure import step_figure, step_window
+from divideropt.report.summary_tables import goals_table
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
 
@@ -70,10 +70,15 @@ def render_report(data: ReportData) -> str:
         marks=marks(data.strategies),
         counts={name: sum(d.strategy == name for d in data.front) for name in data.strategies},
         tables={
+            "goals": goals_table(data.headline),
             "best": best_table(data),
             "front": front_table(data, MOST_ROWS),
             "runs": runs_table(data),
             "outcomes": outcome_table(data),
+            "along": along_table(data.failing),
+            "bounds": bounds_table(data.failing),
+            "convergence": convergence_table(data.tracks),
+            "versions": versions_table(data.provenance),
             "choosing": choosing_table(data),
             "strategies": strategies_table(data),
             "tests": rank_table(data),
@@ -81,6 +86,12 @@ def render_report(data: ReportData) -> str:
             "reasons": reasons_table(data),
             "volumes": volumes_table(data),
         },
+        unequal=unequal(data.tracks),
+        share=share,
+        early=EARLY,
+        few=FEW,
+        grouped=grouped,
+        brief=brief,
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
         number=number,
@@ -94,16 +105,13 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
     found = []
     if data.front:
         found += _front_figures(data)
-    if any(run.hypervolumes for run in data.runs):
-        found.append(drawn("hypervolume", hypervolume(data)))
+    found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
     if data.cost is not None:
         for pair, figure in cost_figures(data):
             names = " and ".join(data.objectives[i].axis.words for i in pair)
             found.append(drawn(f"cost-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
     if data.kkt.computed:
         found.append(drawn("residuals", residuals(data)))
-    if len(data.objectives) == 1:
-        found.append(drawn("least", least_objective(data)))
     if data.comparison is not None:
         found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:

@@ -5,7 +5,7 @@ import secrets
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from errno import EMLINK, ENOSYS, ENOTEMPTY, EOPNOTSUPP, EPERM
+from errno import EEXIST, EMLINK, ENOSYS, ENOTDIR, ENOTEMPTY, EOPNOTSUPP, EPERM
 from pathlib import Path
 
 from divideropt.errors import DiskError, StoreInUseError, UsageError
@@ -84,6 +84,41 @@ def publish_folder(path: Path, write: Write, allowed: Check = _always) -> None:
                 raise _taken(folder) from error
             raise
         _force(folder.parent, folder)
+
+
+def publish_tree(folder: Path, write: Write) -> None:
+    """Make a folder of files that is there with all of them or not at all; nothing is ever replaced.
+
+    Args:
+        folder: Which; the folder above it is there.
+        write: Writes files into the folder it is given, each forced to disk.
+
+    Raises:
+        UsageError: The folder is there and not empty, or the one above it is not there.
+        DiskError: The disk refused; the folder is not there.
+    """
+    whole = folder.resolve()
+    if not whole.parent.is_dir():
+        raise UsageError(f"{folder}: there is no folder {folder.parent}; make it first")
+    if whole.exists() and (not whole.is_dir() or any(whole.iterdir())):
+        raise _in_the_way(folder)
+    with disk_errors(folder):
+        for old in whole.parent.glob(f"{TEMPORARY_PREFIX}*-{whole.name}"):
+            if not _lives(old.name.removeprefix(TEMPORARY_PREFIX).split("-")[0]):
+                _remove(old)  # of a process that was killed
+
+    def fill(staging: Path) -> None:
+        staging.mkdir()
+        write(staging)
+
+    with _staged(whole, fill, _always) as staging:
+        try:
+            staging.rename(whole)  # which replaces no folder but an empty one
+        except OSError as error:
+            if error.errno in (ENOTEMPTY, EEXIST, ENOTDIR):
+                raise _in_the_way(folder) from error
+            raise
+        _force(whole.parent, whole.parent)
 
 
 def make_folder(folder: Path) -> None:
@@ -218,6 +253,10 @@ def _remove(path: Path) -> None:
         shutil.rmtree(path, ignore_errors=True)
     else:
         path.unlink(missing_ok=True)
+
+
+def _in_the_way(folder: Path) -> UsageError:
+    return UsageError(f"{folder}: is there already, and is not replaced; name another folder, or delete it first")
 
 
 def _taken(path: Path) -> StoreInUseError:

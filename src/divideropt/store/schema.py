@@ -50,6 +50,9 @@ KKT_RESIDUAL = (
 
 KKT_FLOOR = "what the noise of the model may make of the residual; a residual below is zero within the noise"
 
+STORED = ("run", "batch", "outcome", "outcome_text", "verified", "kkt", "kkt_residual", "kkt_floor")
+"""The columns that every campaign's tables have beside `design_id`, its variables and its model's quantities."""
+
 _VERSION_KEY = b"divideropt.schema_version"
 
 

@@ -91,6 +91,8 @@ async function draw(figure) {
   const { data, layout } = coloured(figure);
   await Plotly.newPlot(element, data, layout, configOf(figure));
   if (element.querySelector(".no-webgl, a[href]")) return leaveOut(element); // plotly's own words, with a link
+  element.setAttribute("role", "group"); // no image: plotly's buttons in it are reached by Tab
+  for (const drawing of element.querySelectorAll(".main-svg, .gl-container")) drawing.setAttribute("aria-hidden", "true"); // the label says what it is; the numbers are in the tables
   shown.set(figure.id, figure);
   if (!figure.axes) return;
   if (isDotted(figure)) beginDots(figure);

@@ -24,3 +24,10 @@ function make(name, text, attributes) {
   for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
   return element;
 }
+
+/** Give a text to the user as a file. */
+function offer(text, name, kind) {
+  const address = URL.createObjectURL(new Blob([text], { type: kind }));
+  make("a", undefined, { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+}

@@ -27,7 +27,14 @@ async function beginSelecting() {
   await (restore() ?? clearSelection());
 }
 
+function offerCampaign() { // as it stands in the page, which is what the store has
+  const button = byId("save-campaign");
+  if (button) button.addEventListener("click", () => offer(byId("campaign").textContent, "campaign.yaml", "application/yaml"));
+}
+
 async function begin() {
+  beginScrollers();
+  offerCampaign();
   const pictures = report.figures.filter((figure) => figure.webgl);
   if (report.selected) await beginSelecting(); // first: so that the figures are drawn once, with the selection in them
   const flat = report.figures.filter((figure) => !figure.webgl);
