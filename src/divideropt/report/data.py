@@ -49,6 +49,8 @@ from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_table
 from divideropt.report.setting import setting_of
+from divideropt.report.sheets import Sheets, read_sheets
+from divideropt.report.sketches import Sketches, read_sketches
 from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
@@ -98,6 +100,8 @@ class ReportData:
         notes: Sentences on the state of the store.
         provenance: What computed it, and how to repeat it.
         studies: The campaign's sensitivity studies in short.
+        sketches: Every design that the page can show, to scale; None for a model that offers no sketch.
+        sheets: Dimension sheets of designs whose response there is; None where there are none.
     """
 
     name: str
@@ -125,6 +129,8 @@ class ReportData:
     notes: tuple[str, ...]
     provenance: Provenance
     studies: tuple[StudySummary, ...] = ()
+    sketches: Sketches | None = None
+    sheets: Sheets | None = None
 
     @property
     def strategies(self) -> tuple[str, ...]:
@@ -187,7 +193,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     variables, objectives = variables_of(problem), objectives_of(problem, front, reference)
     failures = all_failures([log.failures for log in logs.values()])
     breaches = all_breaches([log.breaches for log in logs.values()])
-    return ReportData(
+    data = ReportData(
         campaign.name,
         text,
         setting_of(campaign),
@@ -214,6 +220,17 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         read_provenance(store, campaign),
         study_summary(store),
     )
+    return _with_dimensions(data, problem)
+
+
+def _with_dimensions(data: ReportData, problem: Problem) -> ReportData:
+    """Add the sketch of every design that the page can show, and sheets of those whose response it has."""
+    candidates = data.choosing.candidates if data.choosing else ()
+    shown = (*(data.front[i] for i in data.drawn), *data.best, *(candidate.design for candidate in candidates))
+    known = {design.design_id: design for design in shown}
+    simulated = data.responses.designs if data.responses else ()
+    sheets = read_sheets(problem, [known[response.name] for response in simulated if response.name in known])
+    return replace(data, sketches=read_sketches(problem, shown), sheets=sheets)
 
 
 def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int]:

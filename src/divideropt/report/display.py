@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.dimensions import Dimension
 from divideropt.models.divider.scenarios import GATHERED
 from divideropt.models.statistic import parted
 from divideropt.models.statistic import words_of as statistic_words
@@ -97,16 +98,14 @@ class Axis:
 
     def short(self, value: float) -> str:
         """Write a value that was computed with the unit shown, without zeros that say nothing."""
-        text = number(self.scaled(value))
-        text = text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
-        return f"{text} {self.shown.unit}".rstrip()
+        return f"{trimmed(number(self.scaled(value)))} {self.shown.unit}".rstrip()
 
     def bound(self, value: float) -> str:
         """Write a value that somebody gave, a bound or a goal, as short as it was given, with the unit shown."""
         return f"{self.scaled(value):.6g} {self.shown.unit}".rstrip().replace("-", "−")
 
 
-def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
+def axis_of(entry: Parameter | Quantity | Dimension, values: Iterable[float]) -> Axis:
     """Choose how a column is shown.
 
     Args:
@@ -161,6 +160,11 @@ def number(value: float, digits: int = DIGITS) -> str:
         mantissa = f"{value:.{digits - 1}e}".split("e")[0]
         text = f"{mantissa}·10{str(exponent).translate(_RAISED)}"
     return text.replace("-", "−")
+
+
+def trimmed(text: str) -> str:
+    """Take the zeros that say nothing off the end of a number that `number` wrote."""
+    return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
 
 
 def rounded(value: float, digits: int = 5) -> float:

@@ -35,6 +35,8 @@ SCRIPTS = (
     "parallel.js",
     "brushes.js",
     "closely.js",
+    "sketch.js",
+    "sheet.js",
     "tables.js",
     "bar.js",
     "fragment.js",
@@ -64,7 +66,7 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
         .get_template(template)
         .render(
             **context,
-            style=Markup(_asset("report.css")),
+            style=Markup(_asset("report.css") + _asset("sketch.css")),
             plotly=Markup(plotly),
             script=Markup(script),
             scripts=" ".join(_hash(text) for text in (plotly, script)),

@@ -26,6 +26,9 @@ from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.sensitivity_figures import index_bars
+from divideropt.report.sheets import sheets_payload
+from divideropt.report.sketch_svg import DEFS, light_style
+from divideropt.report.sketches import sketch_payload
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.summary_tables import goals_table
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
@@ -94,6 +97,7 @@ def render_report(data: ReportData) -> str:
         brief=brief,
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
+        rounded=[] if data.sheets is None else [name.replace("_", " ") for name in data.sheets.rounded],
         number=number,
         verified_words=lambda design: verified_words(design, data),
         most_rows=MOST_ROWS,
@@ -146,18 +150,27 @@ def _selection(data: ReportData) -> dict[str, Any]:
     """What the page needs to select designs and to show them."""
     if not data.front:
         return {"selected": None}
-    responses = data.responses
+    responses, designs = data.responses, _designs(data)
     return {
         "fields": [_field(facts.axis, lower=facts.lower, upper=facts.upper) for facts in data.variables]
         + [_field(facts.axis, goal=facts.goal) for facts in data.objectives],
         "objectives": len(data.objectives),
-        "designs": _designs(data),
+        "designs": designs,
         "tried": _tried(data),
         "responses": {} if responses is None else _curves(responses),
         "selected": _first(data),
         "name": data.name,
         "simulates": responses is not None,
+        **_dimensions(data, designs["ids"]),
     }
+
+
+def _dimensions(data: ReportData, ids: list[str]) -> dict[str, Any]:
+    """What the page needs to draw its designs to scale, and to list their dimensions."""
+    if data.sketches is None:
+        return {}
+    found: dict[str, Any] = {"sketch": {**sketch_payload(data.sketches, ids), "defs": DEFS, "style": light_style()}}
+    return found if data.sheets is None else {**found, "sheets": sheets_payload(data.sheets)}
 
 
 def _curves(responses: Responses) -> dict[str, Any]:

@@ -17,6 +17,8 @@ async function beginSelecting() {
   followInTables();
   followInFigures();
   followClosely();
+  followInSketch();
+  followInSheet();
   followToggle();
   beginParallel();
   followInBar();
