@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 from divideropt.analysis import Tally
 from divideropt.api.designs import Simulated, simulate
-from divideropt.api.frames import stored_frame
+from divideropt.api.frames import preformatted, stored_frame
 from divideropt.api.given import listen
 from divideropt.campaign.beside import Side
 from divideropt.campaign.config import Campaign
@@ -42,6 +42,18 @@ class Results:
     def __repr__(self) -> str:
         """Say where it is."""
         return f"divideropt.open({str(self.folder)!r})"
+
+    def _repr_html_(self) -> str:
+        """Say in a notebook what was asked for, and what there is to do with it."""
+        runs = ", ".join(run.name for run in plan_runs(self.campaign))
+        return preformatted(
+            f"{self!r}: {self.campaign.name}\n"
+            f"runs: {runs}\n"
+            f"variables: {', '.join(self.variables)}\n"
+            f"objectives: {', '.join(self.objectives)}\n"
+            ".front(), .plot_front(), .evaluations(run), .simulate(design_id), .status(), .verify(), .report(), "
+            ".export()"
+        )
 
     @property
     def folder(self) -> Path:

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt run campaigns/quickstart.yaml",
-        "divideropt run campaigns/divider.yaml --workers 4 --store results/second",
-        "divideropt run campaigns/divider.yaml           # once more: goes on, or says that all is done",
-        "divideropt run campaigns/divider.yaml --json | jq '.front'",
+        "divideropt run my.yaml",
+        "divideropt run my.yaml --workers 4 --store results/second",
+        "divideropt run my.yaml    # once more: goes on, or says that all is done",
+        "divideropt run my.yaml --json | jq '.front'",
     ),
 )
 @click.argument("campaign", type=FILE)
@@ -77,7 +77,7 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as
 
 @click.command(
     cls=Taught,
-    examples=("divideropt verify results/divider", "divideropt verify results/divider --workers 4 --json"),
+    examples=("divideropt verify results/my", "divideropt verify results/my --workers 4 --json"),
 )
 @click.argument("store", type=FILE)
 @WORKERS
@@ -94,15 +94,15 @@ def verify(store: Path, workers: int | None, as_json: bool) -> None:
     again = shlex.join(["divideropt", "verify", str(store)])
     count = verify_store(Store(store), workers, sys.stderr, again)
     report = write_report(Store(store))
-    say(f"report: {report}")
     say(_counted(count))
+    say(f"report: {report}")
     if as_json:
         write_json({"store": str(store), "report": str(report), **dataclasses.asdict(count)})
 
 
 @click.command(
     cls=Taught,
-    examples=("divideropt status results/divider", "divideropt status results/divider --json | jq '.runs[].best'"),
+    examples=("divideropt status results/my", "divideropt status results/my --json | jq '.runs[].best'"),
 )
 @click.argument("store", type=FILE)
 @AS_JSON
@@ -121,7 +121,7 @@ def status(store: Path, as_json: bool) -> None:
 
 @click.command(
     cls=Taught,
-    examples=("divideropt report results/divider", "divideropt report results/divider --out divider.html"),
+    examples=("divideropt report results/my", "divideropt report results/my --out my.html"),
 )
 @click.argument("store", type=FILE)
 @click.option("--out", type=FILE, help="Where to write it; report.html in the store where not given.")
@@ -138,8 +138,8 @@ def report(store: Path, out: Path | None) -> None:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt export results/divider --format csv",
-        "divideropt export results/divider --format parquet --out tables",
+        "divideropt export results/my --format csv",
+        "divideropt export results/my --format parquet --out tables",
     ),
 )
 @click.argument("store", type=FILE)

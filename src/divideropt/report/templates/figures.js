@@ -30,7 +30,7 @@ function coloured(figure) {
   layout.hoverlabel = { bgcolor: t.paper, bordercolor: t.line, font: { color: t.ink } };
   layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: t.quiet, activecolor: t.ink };
   for (const key of Object.keys(layout)) {
-    if (/^[xy]axis/.test(key)) layout[key] = { showgrid: !isDotted(figure), zeroline: false, showline: true, ticks: "outside", ticklen: 4, ...axis, ...layout[key] };
+    if (/^[xy]axis/.test(key)) layout[key] = { exponentformat: "power", minexponent: 5, showgrid: !isDotted(figure), zeroline: false, showline: true, ticks: "outside", ticklen: 4, ...axis, ...layout[key] };
   }
   if (layout.scene) {
     if (byId(figure.id).clientWidth < NARROW) {

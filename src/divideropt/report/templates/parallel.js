@@ -82,8 +82,14 @@ function drawRows(context, rows, width) {
   }
 }
 
+/** Elsewhere, then copied as one picture: of many lines drawn on a canvas in the page Chromium prints none. */
 function drawAll() {
-  drawRows(cleared(parallel.box.querySelector(".all")), [...Array(drawnDesigns).keys()], 1);
+  const canvas = parallel.box.querySelector(".all");
+  const apart = document.createElement("canvas");
+  drawRows(cleared(apart), [...Array(drawnDesigns).keys()], 1);
+  const context = cleared(canvas);
+  context.resetTransform();
+  context.drawImage(apart, 0, 0);
 }
 
 /** Draw the selected lines; hastily, while a brush is dragged, an even part of them where they are many. */

@@ -18,7 +18,6 @@ const tried = report.tried && {
 };
 
 const isDotted = (figure) => isProjection(figure) && figure.dotted; // its points are drawn here
-const crisp = () => (window.matchMedia("print").matches ? 3 : Math.max(1, window.devicePixelRatio || 1)); // pixels of a canvas for one of the page
 
 /** Where plotly has put the axes [px], and what they show. */
 function frameOf(element) {

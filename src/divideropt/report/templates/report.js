@@ -13,6 +13,29 @@ function showQuantity(name) { // one quantity over every parameter of a study
   return redraw(figure);
 }
 
+/** What was folded away when it was drawn had no width. */
+function resizeIn(details) {
+  for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
+}
+
+/** Make tables smaller that are wider than the paper. */
+function fitToPaper() {
+  for (const frame of document.querySelectorAll(".scroll")) {
+    const content = frame.firstElementChild;
+    content.style.zoom = "";
+    if (onPaper()) content.style.zoom = Math.min(1, frame.clientWidth / content.scrollWidth);
+  }
+}
+
+/** Open what is folded away while the page is printed: paper has nothing to click. */
+function unfoldForPaper() {
+  for (const details of document.querySelectorAll(onPaper() ? "details:not([open])" : "details[data-folded]")) {
+    details.toggleAttribute("data-folded", onPaper());
+    details.open = onPaper();
+    resizeIn(details);
+  }
+}
+
 async function beginSelecting() {
   followInTables();
   followInFigures();
@@ -54,16 +77,16 @@ async function begin() {
   for (const media of ["(prefers-color-scheme: dark)", "print"]) {
     window.matchMedia(media).addEventListener("change", () => {
       themed = null;
+      if (media === "print") {
+        unfoldForPaper();
+        fitToPaper();
+      }
       shown.forEach(redraw);
       if (media === "print") pictures.filter(() => able).forEach(see);
       if (report.selected) layOut();
     });
   }
-  for (const details of document.querySelectorAll("details")) {
-    details.addEventListener("toggle", () => { // what was folded away when it was drawn had no width
-      for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
-    });
-  }
+  for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => resizeIn(details));
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
   if (able) for (const figure of pictures) whenQuiet(() => see(figure)); // for who scrolls quickly, and for pictures of the page
 }
