@@ -1,7 +1,7 @@
 """A store to what its report says: frozen, in the platform's units, without a word of how it is drawn."""
 
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
@@ -22,11 +22,12 @@ from divideropt.analysis import (
     summarise,
 )
 from divideropt.analysis.summary import Best
+from divideropt.campaign.branches import active_runs, stored_runs
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import build_problem, plan_runs, reference_of
+from divideropt.campaign.plan import build_problem, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
@@ -179,7 +180,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     """
     campaign = stored_campaign(store)
     text = store.read_campaign()
-    problem, runs = build_problem(campaign), plan_runs(campaign)
+    problem, runs = build_problem(campaign), stored_runs(campaign, store)
     schema = TableSchema.of(problem)
     if logs is None:
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
@@ -208,7 +209,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         campaign.verification.tolerance,
         _drawn(front),
         best,
-        _comparison(facts, logs, problem, reference),
+        _comparison(facts, logs, problem, reference, {run.name for run in active_runs(campaign, store)}),
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
@@ -264,10 +265,14 @@ def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
 
 
 def _comparison(
-    facts: Sequence[RunFacts], logs: Mapping[str, Summary], problem: Problem, reference: FloatArray | None
+    facts: Sequence[RunFacts],
+    logs: Mapping[str, Summary],
+    problem: Problem,
+    reference: FloatArray | None,
+    active: Collection[str],
 ) -> Comparison | None:
-    """Compare the strategies after as many evaluations as every run has."""
-    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts]
+    """Compare the strategies after as many evaluations as every run has; a run that branched by its last branch."""
+    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts if run.name in active]
     if len({c.group for c in contenders if c.evaluations}) < 2:
         return None
     return compare(contenders, problem.objectives, reference)
