@@ -1,5 +1,6 @@
 """A document in a browser: what the tests of pages look at, and that it keeps quiet."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from playwright.sync_api import Page
@@ -12,6 +13,28 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
     return String(kind).includes("webgl") ? null : old.call(this, kind, ...more);
 };"""
 """Makes a browser that lacks it, and is faster than one that computes it."""
+
+
+DOTS = """pair => {
+    const figure = document.getElementById("projection-" + pair);
+    const box = figure.getBoundingClientRect();
+    const { xaxis, yaxis } = figure._fullLayout;
+    const pixels = (name) => {
+        const canvas = figure.querySelector("canvas." + name);
+        const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        const ratio = canvas.width / canvas.clientWidth;
+        return (x, y) => data[4 * (Math.floor(y * ratio) * width + Math.floor(x * ratio)) + 3];
+    };
+    const [all, some] = [pixels("all"), pixels("some")];
+    return figure.data.filter((trace) => trace.customdata).flatMap((trace) => [...trace.customdata].map((id, i) => {
+        const [x, y] = [xaxis.d2p(trace.x[i]), yaxis.d2p(trace.y[i])];
+        return { id, x: box.x + xaxis._offset + x, y: box.y + yaxis._offset + y, all: all(x, y), some: some(x, y) };
+    }));
+}"""
+"""Where each design is in a projection, by plotly's axes, and how opaque the page's canvases are there."""
+
+APART = 12.0
+"""How far from each other two marks surely do not touch, nor the ring around the one that is shown closely [px]."""
 
 
 @dataclass
@@ -31,8 +54,23 @@ class Opened:
             "#response .scatterlayer path.js-line", "paths => paths.map(p => p.getAttribute('d'))"
         )
 
+    def dots(self, pair: str) -> list[dict[str, float]]:
+        """Each design's `id`, place on the screen `x`, `y` [px], and alpha in the canvases `all` and `some` there."""
+        return list(self.page.evaluate(DOTS, pair))
+
     def title(self) -> str:
         return self.page.locator("#selected-title").inner_text()
+
+
+def borne_out(dots: list[dict[str, float]], chosen: Collection[object]) -> None:
+    """Every design has its mark; every chosen one is drawn above, and no other is that has no chosen one near."""
+    assert all(dot["all"] > 0 for dot in dots)
+    above = [dot for dot in dots if dot["id"] in chosen]
+    assert len(above) == len(chosen)
+    assert all(dot["some"] > 0 for dot in above)
+    for dot in dots:
+        if all(max(abs(dot["x"] - other["x"]), abs(dot["y"] - other["y"])) > APART for other in above):
+            assert dot["some"] == 0
 
 
 def quiet(found: Opened) -> None:

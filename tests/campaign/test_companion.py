@@ -160,6 +160,7 @@ nominal: true
     [
         ("dynamic_error: {goal: 1 mL}", "the companion would be this campaign again; delete `nominal`, or give"),
         ("dynamic_error: {worst_of: []}", "the companion would be this campaign again; delete `nominal`, or give"),
+        ("dynamic_error: {worst_of: [scenario]}", "the companion would be this campaign again; delete `nominal`"),
         (
             "failed_share: {goal: 1 %}}\nuncertainty: {parameters: {density: {uniform: [800 kg/m^3, 900 kg/m^3]}}",
             "nothing is left for the companion to minimise; delete `nominal`",
@@ -172,6 +173,14 @@ def test_a_companion_that_would_say_nothing_is_a_mistake(objective, sentence):
         parse_campaign(text := PLAIN.replace("OBJECTIVE", objective), "plain.yaml")
     assert str(caught.value).startswith(f"plain.yaml:{text.splitlines().index('nominal: true') + 1}:1: nominal: ")
     assert sentence in str(caught.value)
+
+
+def test_the_worst_of_all_is_the_campaign_again_where_there_is_one_scenario():
+    text = PLAIN.replace("OBJECTIVE", "dynamic_error: {worst_of: all}").replace(
+        ", scenarios: {light: {load_pressures: [2 MPa, 2 MPa]}}", ""
+    )
+    with pytest.raises(FileMistakes, match="the companion would be this campaign again"):
+        parse_campaign(text)
 
 
 def test_nominal_is_yes_or_no():

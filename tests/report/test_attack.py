@@ -16,9 +16,13 @@ from divideropt.campaign.runner import Runner
 from divideropt.errors import StoreError
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
 from divideropt.report import Curve, ResponseCurves, response_page, write_report
+from divideropt.report.convergence import tracks_of
 from divideropt.report.data import read_report
 from divideropt.report.display import Shown
+from divideropt.report.failing import Bound
+from divideropt.report.headline import headline_of
 from divideropt.report.page import render_report
+from divideropt.report.provenance import Provenance
 
 ATTACKS = (
     "</script><script>window.hacked=1</script>",
@@ -99,11 +103,10 @@ def test_nothing_of_an_attack_runs_or_leaves(opened, attacking):
     row = found.page.locator("#front-table tbody tr").nth(1)
     row.click()
     found.page.locator("#front-table th button").first.click()
-    point = found.page.locator("#projection-0-1 path.point").first
-    point.scroll_into_view_if_needed()
-    box = point.bounding_box()
-    found.page.mouse.move(box["x"] - 1, box["y"])
-    found.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    found.page.locator("#projection-0-1").scroll_into_view_if_needed()
+    dot = found.dots("0-1")[0]
+    found.page.mouse.move(dot["x"] - 3, dot["y"])
+    found.page.mouse.move(dot["x"], dot["y"])
     found.page.wait_for_selector("#projection-0-1 .hoverlayer text")
     assert "%{x}" in found.page.locator("#projection-0-1 .hoverlayer").text_content()
     assert found.page.evaluate(LEFT_BEHIND) == CLEAN
@@ -132,7 +135,11 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         responses=responses,
         runs=tuple(
             replace(
-                run, name=hostile, strategy=hostile, examples=dict.fromkeys(run.outcomes, hostile), ending=hostile
+                run,
+                name=hostile,
+                strategy=hostile + run.strategy,
+                examples=dict.fromkeys(run.outcomes, hostile),
+                ending=hostile,
             )
             for run in data.runs
         ),
@@ -142,8 +149,17 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         setting=((hostile, hostile),),
         constraints=(hostile,),
         notes=(hostile,),
-        versions={hostile: hostile},
+        provenance=Provenance({hostile: hostile}, ({hostile: hostile},), ((hostile, hostile),), hostile),
     )
+    runs, along = changed.runs, data.failing.along
+    tracks = tracks_of(runs, changed.objectives)
+    failing = replace(
+        data.failing,
+        along=tuple(replace(one, axis=_hostile(one.axis, hostile)) for one in along),
+        bounds=(Bound(hostile, 1, 1),),
+    )
+    headline = headline_of(changed.front, changed.best, changed.objectives)
+    changed = replace(changed, tracks=tracks, failing=failing, headline=headline)
     found = opened(render_report(changed), NO_WEBGL)
     assert "window.hacked" in found.page.locator("#response .legend").text_content()
     assert found.page.evaluate(LEFT_BEHIND) == CLEAN

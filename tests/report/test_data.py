@@ -12,9 +12,11 @@ from divideropt.campaign.plan import build_problem
 from divideropt.models import Domain, Parameter, Quantity
 from divideropt.problem import DesignSpace, Variable
 from divideropt.report import Curve, ResponseCurves, response_page, write_report
+from divideropt.report.convergence import tracks_of
+from divideropt.report.convergence_figure import convergence_figure
 from divideropt.report.data import read_report
 from divideropt.report.display import axis_of, number, shown_as
-from divideropt.report.figures import front_3d, hypervolume, projections, residuals
+from divideropt.report.figures import front_3d, projections, residuals
 from divideropt.report.front import Design, leanings
 from divideropt.report.page import render_report
 from divideropt.report.responses import MOST_POINTS
@@ -177,11 +179,11 @@ def test_hostile_text_is_escaped_everywhere(data):
 def test_figures_hold_no_tag_from_outside(data):
     link = '<a href="https://example.org/">here</a>'
     objectives = tuple(replace(o, axis=replace(o.axis, words=link, symbol=link)) for o in data.objectives)
-    runs = tuple(replace(run, name=link, strategy=link) for run in data.runs)
-    front = tuple(replace(d, strategy=link) for d in data.front)
+    runs = tuple(replace(run, name=link, strategy=link + run.strategy) for run in data.runs)
+    front = tuple(replace(d, strategy=link + d.strategy) for d in data.front)
     hostile = replace(data, objectives=objectives, runs=runs, front=front)
-    for draw in (front_3d, hypervolume, lambda d: projections(d)[0][1]):
-        figure = draw(hostile).to_json()
+    curve = convergence_figure(tracks_of(runs, data.objectives)[0], hostile.strategies)
+    for figure in (front_3d(hostile).to_json(), curve.to_json(), projections(hostile)[0][1].to_json()):
         assert "example.org" in figure
         assert "\\u003ca href" not in figure
         assert "<a href" not in figure
@@ -261,7 +263,8 @@ def test_a_design_that_deviates_is_said_so_above_the_table(data):
     )
     text = render_report(replace(data, front=front))
     warning = text.index("2 designs of this front deviate:")
-    assert warning < text.index('id="front-table"')
+    assert text.index("2 designs of this front deviate</strong>") < text.index('id="front-table"')
+    assert text.index('id="certificates"') < warning
     assert f"<b>{first.design_id}</b> deviates, by 5.2 %" in text[warning:]
     assert f"<b>{second.design_id}</b> deviates, by its outcome" in text[warning:]
     assert f"Verified: 2 of {len(front)} designs" in text

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from browsing import NO_WEBGL, Opened, quiet
+from browsing import NO_WEBGL, Opened, borne_out, quiet
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.simulate import simulate
 from divideropt.report import Curve, ResponseCurves, response_page, write_response
+from divideropt.report.convergence import tracks_of
 from divideropt.report.data import ReportData
 from divideropt.report.page import render_report
 
@@ -30,6 +31,22 @@ COUNT_COLOURS = """async (png) => {
     return new Set(pixels).size;
 }"""
 """How many colours a screenshot has; the browser knows PNG."""
+
+
+BESIDE = """([pair, places]) => {
+    const canvas = document.querySelector(`#projection-${pair} canvas.all`);
+    const box = canvas.getBoundingClientRect();
+    const context = canvas.getContext("2d");
+    const ratio = canvas.width / canvas.clientWidth;
+    const { data, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+    const near = (x, y) => places.some(([a, b]) => Math.hypot(a - box.x - x / ratio, b - box.y - y / ratio) < 6);
+    let count = 0;
+    for (let y = 0; y < height; y += 1) {
+        for (let x = 0; x < width; x += 1) if (data[4 * (y * width + x) + 3] && !near(x, y)) count += 1;
+    }
+    return count;
+}"""
+"""How many pixels of a projection have ink farther than a mark's size from every design."""
 
 
 @pytest.fixture(scope="module")
@@ -53,11 +70,11 @@ def test_no_button_shares(report):
 
 def test_each_projection_has_a_point_a_design(report, data):
     for pair in ("0-1", "0-2", "1-2"):
-        traces = report.page.eval_on_selector_all(
-            f"#projection-{pair} .scatterlayer .trace", "ts => ts.map(t => t.querySelectorAll('path.point').length)"
-        )
-        assert sum(traces[:-1]) == len(data.front)
-        assert traces[-1] == 1, "the ring around the selected design"
+        dots = report.dots(pair)
+        assert sorted(dot["id"] for dot in dots) == sorted(design.design_id for design in data.front)
+        borne_out(dots, [])
+        beside = report.page.evaluate(BESIDE, [pair, [[dot["x"], dot["y"]] for dot in dots]])
+        assert beside == 0, "no mark where no design is"
 
 
 def test_the_front_is_drawn_in_three_dimensions(report):
@@ -73,8 +90,9 @@ def test_the_parallel_coordinates_are_drawn(report, data):
     assert report.page.evaluate(COUNT_COLOURS, picture) > 100
 
 
-def test_each_run_has_a_line_of_hypervolume(report, data):
-    assert report.count("#hypervolume .scatterlayer path.js-line") == len(data.runs)
+@pytest.mark.parametrize("track", ["hypervolume", "attainment"])
+def test_each_run_has_a_line_of_convergence(report, data, track):
+    assert report.count(f"#{track} .scatterlayer path.js-line") == len(data.runs), "each is its strategy's only one"
 
 
 def test_each_strategy_has_a_line_of_residuals(report, data):
@@ -115,13 +133,9 @@ def test_the_list_and_the_keyboard_select_too(report, data):
 def test_a_click_on_a_point_selects_its_design(report, data):
     report.page.select_option("#choice", _id(data, 0))
     report.page.wait_for_timeout(300)
-    chosen = report.page.evaluate("""() => {
-        const points = [...document.querySelectorAll('#projection-0-1 .trace:first-child path.point')];
-        const far = points.reduce((a, b) => a.getBoundingClientRect().y < b.getBoundingClientRect().y ? a : b);
-        far.scrollIntoView({block: 'center', behavior: 'instant'});
-        const box = far.getBoundingClientRect();
-        return [box.x + box.width / 2, box.y + box.height / 2];
-    }""")
+    report.page.locator("#projection-0-1").evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
+    highest = min(report.dots("0-1"), key=lambda dot: dot["y"])
+    chosen = highest["x"], highest["y"]
     before = report.title()
     report.page.mouse.move(chosen[0] - 2, chosen[1])
     report.page.mouse.move(*chosen)
@@ -176,13 +190,13 @@ def test_without_webgl_a_sentence_stands_for_the_picture(flat, data):
     assert not flat.page.locator("#front").is_visible()
     assert flat.page.locator("#the-front .missing").is_visible()
     assert flat.count("#parallel .axis") == len(data.variables) + len(data.objectives)
-    assert flat.count("#projection-0-1 path.point") == len(data.front) + 1
+    assert len([dot for dot in flat.dots("0-1") if dot["all"] > 0]) == len(data.front)
     quiet(flat)
 
 
 def test_hostile_text_stays_text(opened, data):
-    designs = tuple(replace(d, design_id=HOSTILE + d.design_id, strategy=LINK) for d in data.front)
-    runs = tuple(replace(run, name=HOSTILE + LINK, strategy=LINK) for run in data.runs)
+    designs = tuple(replace(d, design_id=HOSTILE + d.design_id, strategy=LINK + d.strategy) for d in data.front)
+    runs = tuple(replace(run, name=HOSTILE + LINK, strategy=LINK + run.strategy) for run in data.runs)
     objectives = tuple(replace(o, axis=replace(o.axis, words=HOSTILE + LINK, symbol=LINK)) for o in data.objectives)
     found = opened(
         render_report(
@@ -193,6 +207,7 @@ def test_hostile_text_stays_text(opened, data):
                 front=designs,
                 runs=runs,
                 objectives=objectives,
+                tracks=tracks_of(runs, data.objectives),
                 notes=(HOSTILE,),
             )
         ),

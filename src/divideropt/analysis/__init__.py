@@ -3,6 +3,7 @@
 from divideropt.analysis.attainment import attainment_surface, median_surface, worst_surface
 from divideropt.analysis.choice import Choice, choose
 from divideropt.analysis.comparison import INDICATORS, Comparison, Contender, Indicator, Ranking, Score, compare
+from divideropt.analysis.course import Course, course_of
 from divideropt.analysis.decision import Goals, achievement, bulge, knee_points, meeting_goals, pseudo_weights
 from divideropt.analysis.differences import neighbours
 from divideropt.analysis.fronts import combined_front, nondominated
@@ -10,6 +11,7 @@ from divideropt.analysis.goal_directions import gaps, reached
 from divideropt.analysis.house_of_quality import Criterion, House, house_of_quality
 from divideropt.analysis.indicators import (
     additive_epsilon,
+    attainment_history,
     best_attainment,
     hypervolume,
     hypervolume_contributions,
@@ -35,6 +37,7 @@ __all__ = [
     "Comparison",
     "Contender",
     "Convergence",
+    "Course",
     "Criterion",
     "Effect",
     "FailedStretch",
@@ -58,6 +61,7 @@ __all__ = [
     "Verified",
     "achievement",
     "additive_epsilon",
+    "attainment_history",
     "attainment_surface",
     "best_attainment",
     "bulge",
@@ -66,6 +70,7 @@ __all__ = [
     "compare",
     "converged",
     "convergence",
+    "course_of",
     "effect_size",
     "effects_of",
     "gaps",

@@ -1,7 +1,7 @@
 """Where in the box the designs of a sample failed, and how."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +54,19 @@ def failures_of(evaluations: Evaluations, space: DesignSpace) -> Failures:
     parts = np.clip((shares * PARTS).astype(np.int64), 0, PARTS - 1)
     outcomes = Counter(str(verdict.outcome) for verdict in evaluations.verdicts if not verdict.ok)
     return Failures(len(ok), dict(outcomes.most_common()), _counts(parts), _counts(parts[~ok]))
+
+
+def all_failures(samples: Sequence[Failures]) -> Failures:
+    """Count those of several samples of one box together, at least one."""
+    outcomes: Counter[str] = Counter()
+    for sample in samples:
+        outcomes.update(sample.outcomes)
+    return Failures(
+        sum(sample.designs for sample in samples),
+        dict(outcomes.most_common()),
+        np.asarray(sum(sample.counts for sample in samples)),
+        np.asarray(sum(sample.failed for sample in samples)),
+    )
 
 
 def working(evaluations: Evaluations) -> NDArray[np.bool_]:

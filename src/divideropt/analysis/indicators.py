@@ -7,7 +7,7 @@ import numpy as np
 
 from divideropt.analysis.fronts import nondominated
 from divideropt.models.base import FloatArray
-from divideropt.problem import AGGREGATES, Problem, Told
+from divideropt.problem import AGGREGATES, Objective, Problem, Told
 
 
 def hypervolume(F: FloatArray, reference: FloatArray) -> float:
@@ -90,12 +90,32 @@ def multiplicative_epsilon(F: FloatArray, front: FloatArray) -> float:
 def hypervolume_history(told: Told, reference: FloatArray, marks: Sequence[int]) -> list[float]:
     """Return the hypervolume of the feasible designs among the first m evaluations, for each mark m."""
     front = np.empty((0, told.F.shape[1]))
-    values, seen = [], 0
+    values, seen, feasible = [], 0, told.feasible
     for mark in marks:
-        fresh = told.F[seen:mark][told.feasible[seen:mark]]
+        fresh = told.F[seen:mark][feasible[seen:mark]]
         front = np.concatenate([front, fresh])
         front = front[nondominated(front)]
         values.append(hypervolume(front, reference))
+        seen = mark
+    return values
+
+
+def attainment_history(told: Told, objectives: Sequence[Objective], marks: Sequence[int]) -> list[float]:
+    """Return the least max λ_i of (3.24) of the feasible designs among the first m evaluations, for each mark m.
+
+    Args:
+        told: All of a run; what is between two marks is looked at once, so that a long run costs no memory.
+        objectives: Each with a goal.
+        marks: Not falling.
+
+    Returns:
+        A value a mark, infinite before the first feasible design.
+    """
+    values, best, seen, feasible = [], np.inf, 0, told.feasible
+    for mark in marks:
+        fresh = told.F[seen:mark][feasible[seen:mark]]
+        best = min(best, float(AGGREGATES["goal_attainment"](fresh, objectives).min(initial=np.inf)))
+        values.append(best)
         seen = mark
     return values
 

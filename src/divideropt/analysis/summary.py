@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
+from divideropt.analysis.breaches import Breaches, all_breaches, breaches_of
+from divideropt.analysis.failures import Failures, all_failures, failures_of
 from divideropt.analysis.fronts import nondominated
 from divideropt.analysis.indicators import best_attainment
 from divideropt.models import Outcome
@@ -42,6 +44,8 @@ class Summary:
         examples: A sentence of the first simulation that ended so.
         best: The best by goal attainment; None where no design is feasible or an objective has no goal.
         front: The feasible non-dominated rows in the order of evaluation, the first of equals, without `batch`.
+        failures: Where in the box simulations failed.
+        breaches: Which bounds the others break.
     """
 
     told: Told
@@ -49,6 +53,8 @@ class Summary:
     examples: Mapping[str, str]
     best: Best | None
     front: pa.Table
+    failures: Failures
+    breaches: Breaches
 
     @property
     def evaluations(self) -> int:
@@ -70,6 +76,8 @@ def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) ->
         schema: The log's columns.
     """
     told = [Told(np.empty((0, len(problem.objectives))), np.empty((0, 1)))]
+    nothing = schema.evaluations(schema.arrow.empty_table())
+    failures, breaches = failures_of(nothing, problem.space), breaches_of(problem.tell(nothing))
     outcomes: Counter[str] = Counter()
     examples: dict[str, str] = {}
     best, front, values, rows = None, schema.arrow.empty_table(), told[0].F, 0
@@ -79,6 +87,8 @@ def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) ->
             outcomes[str(verdict.outcome)] += count
             examples.setdefault(str(verdict.outcome), verdict.text)
         fresh = problem.tell(evaluations)
+        failures = all_failures([failures, failures_of(evaluations, problem.space)])
+        breaches = all_breaches([breaches, breaches_of(fresh)])
         found = best_attainment(fresh, problem)
         if found is not None and (best is None or found[1] < best.value):
             best = Best(rows + found[0], found[1], part.take(pa.array([found[0]])))
@@ -91,4 +101,4 @@ def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) ->
         told.append(Told(fresh.F, fresh.violation[:, None]))
         rows += part.num_rows
     together = Told(np.concatenate([t.F for t in told]), np.concatenate([t.G for t in told]))
-    return Summary(together, outcomes, examples, best, front.drop_columns(["batch"]))
+    return Summary(together, outcomes, examples, best, front.drop_columns(["batch"]), failures, breaches)

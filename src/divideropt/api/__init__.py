@@ -8,11 +8,13 @@ the unit, the symbol and the description of each column in `attrs["units"]`, `at
 
 from divideropt.api.campaigns import check, run
 from divideropt.api.designs import Simulated, error_budget, evaluate, simulate
+from divideropt.api.sheets import DimensionSheet, sheet
 from divideropt.api.stores import Results, export, open, status, verify
 from divideropt.api.studies import Compared, Study, compare, sensitivity
 
 __all__ = [
     "Compared",
+    "DimensionSheet",
     "Results",
     "Simulated",
     "Study",
@@ -24,6 +26,7 @@ __all__ = [
     "open",
     "run",
     "sensitivity",
+    "sheet",
     "simulate",
     "status",
     "verify",

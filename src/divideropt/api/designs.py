@@ -8,7 +8,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from divideropt.api.frames import modelled_frame, preformatted
-from divideropt.api.given import Given, campaign_given
+from divideropt.api.given import Design, Given, campaign_given, setting
 from divideropt.campaign.budget import budget_table
 from divideropt.campaign.designs import evaluate_designs, parse_designs, read_designs, result_columns
 from divideropt.campaign.plan import build_model
@@ -17,13 +17,9 @@ from divideropt.campaign.simulate import simulate as simulate_one
 from divideropt.errors import UsageError
 from divideropt.models.divider import PARAMETERS
 from divideropt.report.response_page import curves_of, response_figure, write_response
-from divideropt.units import format_measure
 
 _FEW = 3
 """So many metrics stand for all: the first are those of the thesis's objectives."""
-
-Design = Mapping[str, float | str]
-"""Parameters by name: a number in the parameter's unit (SI), or a text with a unit, such as "9 mm"."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,7 +120,7 @@ def simulate(
                 "simulate: a campaign is given twice, first and by name; give one, and the design by `set`"
             )
         campaign = design
-    settings = [_setting(name, value) for name, value in (changes | dict(set or {})).items()]
+    settings = [setting(name, value) for name, value in (changes | dict(set or {})).items()]
     return Simulated(simulate_one(campaign_given(campaign), settings, scenario))
 
 
@@ -145,7 +141,7 @@ def error_budget(
         UsageError: As `simulate`.
         FileMistakes: Everything wrong in the campaign, with line and column.
     """
-    settings = [_setting(name, value) for name, value in (set or {}).items()]
+    settings = [setting(name, value) for name, value in (set or {}).items()]
     table, verdict = budget_table(campaign_given(campaign), settings, scenario)
     table.attrs["outcome"] = str(verdict.outcome)
     return table
@@ -176,14 +172,6 @@ def evaluate(designs: pd.DataFrame | Path | str, campaign: Given | None = None) 
         read = read_designs(Path(designs), parameters, results)
     table = evaluate_designs(read, model, asked.model.base_parameters())
     return modelled_frame(table, model.parameters, model.quantities)
-
-
-def _setting(name: str, value: float | str) -> str:
-    """Word a parameter as the command line has it; a number is in the parameter's unit."""
-    if isinstance(value, str):
-        return f"{name}={value}"
-    unit = PARAMETERS[name].unit if name in PARAMETERS else ""
-    return f"{name}={format_measure(float(value), unit)}"
 
 
 def _listed(entries: Mapping[str, tuple[float, object]], name: str) -> pd.DataFrame:

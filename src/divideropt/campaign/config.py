@@ -17,8 +17,9 @@ from pydantic_core import InitErrorDetails
 
 from divideropt.campaign import schemas
 from divideropt.campaign.divider import DividerConfig
-from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, OneOf, by_name, measure_of
+from divideropt.campaign.fields import POSITIVE, GivenMeasure, Measure, by_name, measure_of
 from divideropt.campaign.nominal import nominal_rules
+from divideropt.campaign.parallel import ParallelConfig
 from divideropt.campaign.plans import StrategyPlan, is_study, needs_goals, plans_schema, read_plans
 from divideropt.campaign.plugin import PluginConfig
 from divideropt.campaign.ranges import read_range
@@ -36,15 +37,6 @@ from divideropt.models import Quantity
 
 S = TypeVar("S", "ObjectiveConfig", "ConstraintConfig")
 
-MOST_WORKERS = 256
-"""Beyond it a number of workers is a slip of the finger."""
-
-_BACKENDS = {
-    "loky": "worker processes",
-    "sequential": "one run after the other, in this process",
-    "dask": "the workers of a Dask cluster",
-}
-_ADDRESS = re.compile(r"(tcp|tls)://[A-Za-z0-9._\[\]:-]{1,253}:[0-9]{1,5}", re.ASCII)
 _DEVICE = r"([cC][oO][nN]|[pP][rR][nN]|[aA][uU][xX]|[nN][uU][lL]|[cC][oO][mM][0-9]|[lL][pP][tT][0-9])$"
 """Names that Windows keeps for devices: no folder there can have one, and a store may be copied to it."""
 
@@ -90,38 +82,6 @@ class ConstraintConfig(Section):
             raise ValueError("the constraint has no bound; give `min`, `max` or both")
         if self.min is not None and self.max is not None and self.min > self.max:
             raise ValueError(f"min is above max ({self.min:g} > {self.max:g}), so nothing is feasible; exchange them")
-        return self
-
-
-def _address(value: object) -> str:
-    if not isinstance(value, str) or not _ADDRESS.fullmatch(value):
-        raise ValueError(
-            f"{show(value)} is not the address of a scheduler; write tcp://host:port, or tls://host:port"
-        )
-    return value
-
-
-class ParallelConfig(Section):
-    """How the work is spread."""
-
-    workers: Annotated[int, Field(strict=True, ge=1, le=MOST_WORKERS)] = 2
-    """Processes at a time; `dask`: as many as the cluster has."""
-    backend: Annotated[str, OneOf("backend", _BACKENDS)] = "loky"
-    """`loky`: worker processes; `sequential`: none; `dask`: those of a cluster, see docs/how-to/cluster.md."""
-    scheduler: (
-        Annotated[
-            str, PlainValidator(_address), WithJsonSchema({"type": "string", "pattern": f"^{_ADDRESS.pattern}$"})
-        ]
-        | None
-    ) = None
-    """`dask`: the address of the cluster's scheduler, tcp://host:port."""
-
-    @model_validator(mode="after")
-    def _scheduler_with_dask(self) -> Self:
-        if self.backend == "dask" and self.scheduler is None:
-            raise ValueError("backend dask needs its scheduler's address; add scheduler: tcp://host:port")
-        if self.backend != "dask" and self.scheduler is not None:
-            raise ValueError(f"a scheduler is for backend dask, not {self.backend}; delete it, or change the backend")
         return self
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
-from divideropt.campaign.config import ParallelConfig
 from divideropt.campaign.crew import Crew, LokyCrew
+from divideropt.campaign.parallel import ParallelConfig
 
 
 @contextmanager

@@ -1,11 +1,13 @@
 """A campaign without its scenarios and its uncertainty: the companion that says what these cost."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic_core import InitErrorDetails
 
+from divideropt.campaign.schemas import EVERY
 from divideropt.campaign.sections import mistake, section_of
+from divideropt.models.divider.scenarios import BASE
 from divideropt.models.uncertain import FAILED_SHARE
 
 if TYPE_CHECKING:
@@ -71,15 +73,15 @@ def nominal_rules(raw: Mapping[str, Any]) -> Iterator[InitErrorDetails]:
     """Say why a campaign, as written, that asks for a companion has none."""
     if raw.get("nominal") is not True:
         return
-    others = tuple(section_of(section_of(raw, "model"), "scenarios"))
-    others = others if raw.get("uncertainty") is None else (*others, FAILED_SHARE.name)
+    scenarios = tuple(section_of(section_of(raw, "model"), "scenarios"))
+    others = scenarios if raw.get("uncertainty") is None else (*scenarios, FAILED_SHARE.name)
     objectives, constraints = section_of(raw, "objectives"), section_of(raw, "constraints")
     asked = [
         (str(name), section, entry)
         for section, entries in (("objectives", objectives), ("constraints", constraints))
         for name, entry in entries.items()
     ]
-    if not any(_is_named(name, others) or _gathers(entry, section) for name, section, entry in asked):
+    if not any(_is_named(name, others) or _gathers(entry, section, scenarios) for name, section, entry in asked):
         sentence = (
             "no objective and no constraint is taken over scenarios or uncertainty, so the companion would be this "
             "campaign again; delete `nominal`, or give an objective its `worst_of` or `statistic`"
@@ -101,8 +103,13 @@ def _plain(entries: Mapping[str, S], section: str, others: tuple[str, ...]) -> d
     }
 
 
-def _gathers(entry: object, section: str) -> bool:
-    return isinstance(entry, Mapping) and any(value for key, value in entry.items() if key not in _PLAIN[section])
+def _gathers(entry: object, section: str, scenarios: Sequence[str]) -> bool:
+    """Whether an entry takes a quantity over more than the base scenario and the parameters as they are."""
+    if not isinstance(entry, Mapping):
+        return False
+    over = scenarios if entry.get("worst_of") == EVERY else entry.get("worst_of") or ()
+    others = (value for key, value in entry.items() if key not in {*_PLAIN[section], "worst_of"})
+    return any(others) or any(scenario != BASE for scenario in over)
 
 
 def _is_named(quantity: str, others: tuple[str, ...]) -> bool:

@@ -13,6 +13,7 @@ from divideropt.campaign.uncertainty import counted_name, uncertain_model
 from divideropt.campaign.worst_case import worst_cases
 from divideropt.models import Model, Quantity, divider
 from divideropt.models.base import FloatArray
+from divideropt.models.dimensions import Dimensioned
 from divideropt.models.divider.scenarios import BASE, Scenarios
 from divideropt.models.uncertain import Uncertain
 from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
@@ -91,6 +92,15 @@ def dividers(model: Model) -> Mapping[str, "divider.Divider"]:
     if isinstance(model, Scenarios):
         return model.models
     return {BASE: model} if isinstance(model, divider.Divider) else {}
+
+
+def dimensioned(model: Model) -> Dimensioned | None:
+    """Return the model, without uncertainty and scenarios, if it offers dimensions and a sketch; else None."""
+    if isinstance(model, Uncertain):
+        return dimensioned(model.model)
+    if isinstance(model, Scenarios):
+        return model.base
+    return model if isinstance(model, Dimensioned) else None
 
 
 def build_problem(campaign: Campaign) -> Problem:

@@ -13,7 +13,7 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.plan import build_model, dividers
 from divideropt.campaign.sections import nearest
 from divideropt.errors import UsageError
-from divideropt.models import Outcome, Verdict
+from divideropt.models import Outcome, Parameter, Verdict
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETERS, Divider
 from divideropt.models.divider.metrics import measure
@@ -138,11 +138,20 @@ def chosen_design(campaign: Campaign, settings: Sequence[str], scenario: str) ->
     if scenario not in models:
         raise UsageError(f"--scenario {scenario}: the campaign has {', '.join(models)}; name one of them")
     model = models[scenario]
-    given = [_read(setting) for setting in settings]
+    return model, _parameters_under(campaign, scenario) | read_settings(settings, PARAMETERS)
+
+
+def read_settings(settings: Sequence[str], known: Mapping[str, Parameter]) -> dict[str, float]:
+    """Read `NAME=VALUE` with a unit to parameters by name, in their units.
+
+    Raises:
+        UsageError: One is no parameter, out of its domain, or given twice.
+    """
+    given = [_read(setting, known) for setting in settings]
     twice = [name for name, count in Counter(name for name, _ in given).items() if count > 1]
     if twice:
         raise UsageError(f"--set {twice[0]}: given more than once; say it once")
-    return model, _parameters_under(campaign, scenario) | dict(given)
+    return dict(given)
 
 
 def _parameters_under(campaign: Campaign, scenario: str) -> dict[str, float]:
@@ -168,16 +177,16 @@ def _times(edges: FloatArray) -> FloatArray:
     return np.append((edges[:-1, None] + np.diff(edges)[:, None] * places).ravel(), edges[-1])
 
 
-def _read(setting: str) -> tuple[str, float]:
+def _read(setting: str, known: Mapping[str, Parameter]) -> tuple[str, float]:
     name, equals, text = setting.partition("=")
     name = name.strip()
     if not equals:
         raise UsageError(f"--set {setting}: there is no =; write NAME=VALUE, such as spool_radius='9 mm'")
-    if name not in PARAMETERS:
-        meant = nearest(name, PARAMETERS)
-        remedy = f"did you mean {meant}?" if meant else f"use one of {', '.join(PARAMETERS)}"
+    if name not in known:
+        meant = nearest(name, known)
+        remedy = f"did you mean {meant}?" if meant else f"use one of {', '.join(known)}"
         raise UsageError(f"--set {setting}: {name!r} is no parameter; {remedy}")
-    parameter = PARAMETERS[name]
+    parameter = known[name]
     try:
         value = parse_measure(text.strip(), parameter.unit)
     except ValueError as error:

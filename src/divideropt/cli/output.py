@@ -87,6 +87,17 @@ def write_table(table: "pd.DataFrame", out: Path | None) -> None:
     publish(out, write)
 
 
+def write_text(text: str, out: Path) -> None:
+    """Write a text to a file, there whole or not at all.
+
+    Raises:
+        DiskError: The disk refused.
+    """
+    from divideropt.store.files import publish
+
+    publish(out, lambda path: path.write_text(text, encoding="utf-8"))
+
+
 def write_json(data: Any) -> None:
     """Write plain data as JSON to standard output; null for what is no finite number."""
     import json

@@ -10,7 +10,7 @@ from divideropt.cli.choosing import compare, sensitivity
 from divideropt.cli.files import check, init, schema
 from divideropt.cli.output import say
 from divideropt.cli.running import export, report, run, status, verify
-from divideropt.cli.simulating import error_budget, evaluate, simulate
+from divideropt.cli.simulating import error_budget, evaluate, sheet, simulate
 from divideropt.cli.teaching import Headed
 from divideropt.errors import DivideroptError, FileMistakes
 
@@ -55,7 +55,7 @@ def main() -> None:
     headings={
         "From a campaign to a front": (init, check, run, status, verify, report, export),
         "From a front to a decision": (compare, sensitivity),
-        "One design, or a table of them": (simulate, evaluate, error_budget),
+        "One design, or a table of them": (simulate, evaluate, sheet, error_budget),
         "For editors": (schema,),
     },
 )

@@ -1,10 +1,21 @@
-"""The commands that simulate designs: simulate, evaluate, error-budget."""
+"""The commands that simulate designs: simulate, evaluate, sheet, error-budget."""
 
 from pathlib import Path
 
 import click
 
-from divideropt.cli.output import FILE, check_out, load, say, write_json, write_table
+from divideropt.cli.output import (
+    AS_JSON,
+    FILE,
+    check_out,
+    load,
+    say,
+    say_when_compiling,
+    write_data,
+    write_json,
+    write_table,
+    write_text,
+)
 from divideropt.cli.teaching import Taught
 
 # ruff: noqa: PLC0415 (what takes time is imported where it is needed)
@@ -102,3 +113,54 @@ def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str
     table, verdict = budget_table(asked, settings, scenario)
     write_table(table, out)
     say(f"outcome: {verdict.outcome} {verdict.text}".rstrip())
+
+
+@click.command(
+    cls=Taught,
+    examples=(
+        "divideropt sheet results/divider nsga2-1/310 --step '0.1 mm'",
+        "divideropt sheet results/divider nsga2-1/310 --step '0.1 mm' --out sheet.svg    # drawn to scale",
+        "divideropt sheet campaigns/divider.yaml --set 'spool_radius=13.3 mm' --out sheet.csv",
+    ),
+)
+@click.argument("source", type=FILE, required=False)
+@click.argument("design", required=False)
+@SET
+@click.option(
+    "--step", metavar="LENGTH", help="Round the dimensions to multiples of it, and simulate again: '0.1 mm'."
+)
+@click.option("--out", type=FILE, help="A .csv or .svg file; a table on standard output where not given.")
+@AS_JSON
+def sheet(
+    source: Path | None,
+    design: str | None,
+    settings: tuple[str, ...],
+    step: str | None,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """List a design's dimensions, and with --step what it does when they are rounded.
+
+    SOURCE is a store, whose design <run>/<index> is named by DESIGN, or a campaign, whose design is --set; without
+    it, the thesis's valve as divider.yaml has it. Rounded is what hangs on a variable and is made to a figure:
+    diameters of spool, stems, ports and fixed orifices, groove, opening. The clearance is a fit, and is held.
+    """
+    check_out(out, (".csv", ".svg"))
+    say_when_compiling()
+    from divideropt.campaign.sheet import sheet as sheet_of
+    from divideropt.campaign.sheet import sheet_data, sheet_table
+    from divideropt.report import sheet_svg, sheet_text
+
+    found = sheet_of(source, design, settings, step)
+    if out is not None and out.suffix == ".svg":
+        write_text(sheet_svg(found), out)
+    elif out is not None:
+        write_table(sheet_table(found), out)
+    elif not as_json:
+        write_data(sheet_text(found))
+    if out is not None:
+        say(f"sheet: {out}")
+    if as_json:
+        write_json(sheet_data(found))
+    last = found.columns[-1].verdict
+    say(f"outcome: {last.outcome} {last.text}".rstrip())

@@ -1,13 +1,13 @@
 """Strategies compared, and designs to choose, as text, as JSON and as a table."""
 
 from collections.abc import Sequence
-from math import ceil
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from divideropt.analysis import INDICATORS, Ranking, Score, effect_size
+from divideropt.analysis.course import quantile
 from divideropt.campaign.compare import Compared
 from divideropt.report.display import Axis, axis_of, number
 
@@ -84,7 +84,7 @@ def quartiles(name: str, scores: Sequence[Score]) -> tuple[float, float, float] 
     values = sorted(value for score in scores if (value := score.values[name]) is not None)
     if not values:
         return None
-    lower, median, upper = (_quantile(values, share) for share in QUARTILES)
+    lower, median, upper = (float(quantile(np.array([values]).T, share)[0]) for share in QUARTILES)
     return lower, median, upper
 
 
@@ -100,13 +100,6 @@ def quartile_text(name: str, scores: Sequence[Score]) -> str:
 def p_text(p: float | None) -> str:
     """Write a p-value with two digits, as nobody reads more."""
     return "–" if p is None else number(p, 2)
-
-
-def _quantile(values: Sequence[float], share: float) -> float:
-    """Interpolate between two of sorted values; numpy makes NaN of two infinite ones."""
-    place = share * (len(values) - 1)
-    below, above = values[int(place)], values[ceil(place)]
-    return below if below == above else below + (above - below) * (place % 1)
 
 
 def _strategies(compared: Compared) -> str:

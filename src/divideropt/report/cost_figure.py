@@ -7,8 +7,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from divideropt.report.cost import Placed
-from divideropt.report.data import ObjectiveFacts, ReportData
+from divideropt.report.data import ReportData
 from divideropt.report.display import rounded
+from divideropt.report.facts import ObjectiveFacts
 from divideropt.report.figures import MOST_PROJECTIONS, goal_lines, hover, label, layout, ring
 from divideropt.report.palette import COLOURS
 

@@ -1,9 +1,7 @@
 """A store to what its report says: frozen, in the platform's units, without a word of how it is drawn."""
 
-import platform
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 import pyarrow as pa
@@ -21,47 +19,48 @@ from divideropt.analysis import (
     spread,
     summarise,
 )
+from divideropt.analysis.breaches import all_breaches
+from divideropt.analysis.failures import all_failures
 from divideropt.analysis.summary import Best
 from divideropt.campaign.branches import active_runs, stored_runs
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import build_problem, reference_of
+from divideropt.campaign.plan import Run, build_problem, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.report.choosing import Choosing, choosing_of
+from divideropt.report.convergence import Track, tracks_of
 from divideropt.report.cost import Cost, read_cost
-from divideropt.report.display import Axis, axis_of
+from divideropt.report.facts import (
+    ObjectiveFacts,
+    VariableFacts,
+    bounds_of,
+    constraints_of,
+    objectives_of,
+    variables_of,
+)
+from divideropt.report.failing import Failing, failing_of
 from divideropt.report.front import Design, Leaning, designs_of, leanings
+from divideropt.report.headline import Headline, headline_of
+from divideropt.report.provenance import Provenance, read_provenance
 from divideropt.report.responses import Responses, read_responses
 from divideropt.report.runs import RunFacts, read_run
 from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_table
 from divideropt.report.setting import setting_of
+from divideropt.report.sheets import Sheets, read_sheets
+from divideropt.report.sketches import Sketches, read_sketches
 from divideropt.report.study_summary import StudySummary, study_summary
+from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
 
-MOST_DRAWN = 4000
-"""Designs of the front that the figures draw: SVG gets slow beyond."""
+MOST_DRAWN = 10_000
+"""Designs of the front that the figures draw: beyond, the page grows by its ids, and brushes get slow."""
 
 MOST_ROWS = 1000
 """Designs of the front in the page's table."""
-
-LIBRARIES = (
-    "divideropt",
-    "numpy",
-    "scipy",
-    "numba",
-    "pymoo",
-    "moocore",
-    "pandas",
-    "pyarrow",
-    "SALib",
-    "plotly",
-    "jinja2",
-)
-"""Whose versions the report names: what computes, stores and draws."""
 
 COMPANION_NOTE = (
     "The companion without scenarios and uncertainty, which the campaign asks for (`nominal: true`), has not ended: "
@@ -70,26 +69,6 @@ COMPANION_NOTE = (
 
 Reader = Callable[[pa.Table], tuple[Design, ...]]
 """Evaluations to designs."""
-
-
-@dataclass(frozen=True)
-class VariableFacts:
-    """A variable: how it is shown, and its bounds in its unit."""
-
-    axis: Axis
-    lower: float
-    upper: float
-
-
-@dataclass(frozen=True)
-class ObjectiveFacts:
-    """An objective: its place, how it is shown, and goal, weight and reference in its unit, None where not given."""
-
-    index: int
-    axis: Axis
-    goal: float | None
-    weight: float
-    reference: float | None
 
 
 @dataclass(frozen=True)
@@ -104,10 +83,14 @@ class ReportData:
         objectives: The objectives.
         constraints: The constraints, a sentence each.
         runs: The runs, in the campaign's order.
+        headline: What came out, goal by goal.
+        tracks: How the runs came on.
+        failing: What failed, and where.
         front: The combined front, the best by goal attainment first.
         kkt: How near to stationary its designs are.
         tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
+        tried: Evaluations of all runs, which the front is drawn against.
         best: The best of each strategy by goal attainment; empty where there are no goals.
         comparison: The strategies compared; None where there is one only, or nothing feasible.
         choosing: Designs of the front that are worth a look; None without a front.
@@ -116,8 +99,10 @@ class ReportData:
         scenarios: The best designs under each scenario; None where there is one, or no front.
         cost: The companion's front beside this; None where there is none, or nothing to compare yet.
         notes: Sentences on the state of the store.
-        versions: Versions of libraries by name.
+        provenance: What computed it, and how to repeat it.
         studies: The campaign's sensitivity studies in short.
+        sketches: Every design that the page can show, to scale; None for a model that offers no sketch.
+        sheets: Dimension sheets of designs whose response there is; None where there are none.
     """
 
     name: str
@@ -127,10 +112,14 @@ class ReportData:
     objectives: tuple[ObjectiveFacts, ...]
     constraints: tuple[str, ...]
     runs: tuple[RunFacts, ...]
+    headline: Headline
+    tracks: tuple[Track, ...]
+    failing: Failing
     front: tuple[Design, ...]
     kkt: Convergence
     tolerance: float
     drawn: tuple[int, ...]
+    tried: Tried
     best: tuple[Design, ...]
     comparison: Comparison | None
     choosing: Choosing | None
@@ -139,8 +128,10 @@ class ReportData:
     scenarios: UnderScenarios | None
     cost: Cost | None
     notes: tuple[str, ...]
-    versions: Mapping[str, str]
+    provenance: Provenance
     studies: tuple[StudySummary, ...] = ()
+    sketches: Sketches | None = None
+    sheets: Sheets | None = None
 
     @property
     def strategies(self) -> tuple[str, ...]:
@@ -187,7 +178,11 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
-    facts = tuple(read_run(run, logs[run.name], reference, endings[run.name]) for run in runs)
+    shortest = _shortest(runs, logs)
+    facts = tuple(
+        read_run(run, logs[run.name], problem.objectives, reference, endings[run.name], shortest.get(run.strategy, 0))
+        for run in runs
+    )
     table, notes = _front(store, logs, problem, schema)
     known = store.verification(schema).table()
     table = with_residuals({"combined": table}, campaign, problem, store)["combined"]
@@ -196,18 +191,25 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     cost = read_cost(campaign, store) if campaign.nominal else None
     waiting = (COMPANION_NOTE,) if campaign.nominal and cost is None else ()
     best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
-    return ReportData(
+    variables, objectives = variables_of(problem), objectives_of(problem, front, reference)
+    failures = all_failures([log.failures for log in logs.values()])
+    breaches = all_breaches([log.breaches for log in logs.values()])
+    data = ReportData(
         campaign.name,
         text,
         setting_of(campaign),
-        _variables(problem),
-        _objectives(problem, front, reference),
-        _constraints(problem),
+        variables,
+        objectives,
+        constraints_of(problem),
         facts,
+        headline_of(front, best, objectives),
+        tracks_of(facts, objectives),
+        failing_of(failures, breaches, variables, bounds_of(problem)),
         front,
         convergence(table),
         campaign.verification.tolerance,
         _drawn(front),
+        read_tried(logs),
         best,
         _comparison(facts, logs, problem, reference, {run.name for run in active_runs(campaign, store)}),
         choosing_of(front, problem.objectives, reference),
@@ -216,9 +218,30 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
         cost,
         _progress(facts, store) + notes + waiting,
-        {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+        read_provenance(store, campaign),
         study_summary(store),
     )
+    return _with_dimensions(data, problem)
+
+
+def _with_dimensions(data: ReportData, problem: Problem) -> ReportData:
+    """Add the sketch of every design that the page can show, and sheets of those whose response it has."""
+    candidates = data.choosing.candidates if data.choosing else ()
+    shown = (*(data.front[i] for i in data.drawn), *data.best, *(candidate.design for candidate in candidates))
+    known = {design.design_id: design for design in shown}
+    simulated = data.responses.designs if data.responses else ()
+    sheets = read_sheets(problem, [known[response.name] for response in simulated if response.name in known])
+    return replace(data, sketches=read_sketches(problem, shown), sheets=sheets)
+
+
+def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int]:
+    """Evaluations of the shortest run of each strategy that has any."""
+    found: dict[str, int] = {}
+    for run in runs:
+        count = logs[run.name].evaluations
+        if count:
+            found[run.strategy] = min(count, found.get(run.strategy, count))
+    return found
 
 
 def _with_companion(under: UnderScenarios | None, cost: Cost | None) -> UnderScenarios | None:
@@ -295,38 +318,3 @@ def _drawn(front: Sequence[Design]) -> tuple[int, ...]:
     objectives = np.array([design.objectives for design in front])
     first = [*range(MOST_ROWS), *(int(row) for row in objectives.argmin(axis=0))]
     return tuple(sorted(spread(objectives, first, MOST_DRAWN)))
-
-
-def _variables(problem: Problem) -> tuple[VariableFacts, ...]:
-    return tuple(
-        VariableFacts(axis_of(v.parameter, (v.lower, v.upper)), v.lower, v.upper) for v in problem.space.variables
-    )
-
-
-def _objectives(
-    problem: Problem, front: Sequence[Design], reference: FloatArray | None
-) -> tuple[ObjectiveFacts, ...]:
-    found = []
-    for i, objective in enumerate(problem.objectives):
-        point = None if reference is None else float(reference[i])
-        values = [design.objectives[i] for design in front] or [point or objective.quantity.scale]
-        found.append(ObjectiveFacts(i, axis_of(objective.quantity, values), objective.goal, objective.weight, point))
-    return tuple(found)
-
-
-def _constraints(problem: Problem) -> tuple[str, ...]:
-    sentences = []
-    for constraint in problem.constraints:
-        bounds = {"at least": constraint.minimum, "at most": constraint.maximum}
-        given = {word: bound for word, bound in bounds.items() if bound is not None}
-        axis = axis_of(constraint.quantity, given.values() if any(given.values()) else [constraint.quantity.scale])
-        limits = " and ".join(f"{word} {axis.bound(bound)}" for word, bound in given.items())
-        sentences.append(f"{axis.words} {limits}")
-    return tuple(sentences)
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed as a package"

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from divideropt.models import Parameter, Quantity
+from divideropt.models.dimensions import Dimension
 from divideropt.models.divider.scenarios import GATHERED
 from divideropt.models.statistic import parted
 from divideropt.models.statistic import words_of as statistic_words
@@ -97,16 +98,14 @@ class Axis:
 
     def short(self, value: float) -> str:
         """Write a value that was computed with the unit shown, without zeros that say nothing."""
-        text = number(self.scaled(value))
-        text = text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
-        return f"{text} {self.shown.unit}".rstrip()
+        return f"{trimmed(number(self.scaled(value)))} {self.shown.unit}".rstrip()
 
     def bound(self, value: float) -> str:
         """Write a value that somebody gave, a bound or a goal, as short as it was given, with the unit shown."""
         return f"{self.scaled(value):.6g} {self.shown.unit}".rstrip().replace("-", "−")
 
 
-def axis_of(entry: Parameter | Quantity, values: Iterable[float]) -> Axis:
+def axis_of(entry: Parameter | Quantity | Dimension, values: Iterable[float]) -> Axis:
     """Choose how a column is shown.
 
     Args:
@@ -163,6 +162,34 @@ def number(value: float, digits: int = DIGITS) -> str:
     return text.replace("-", "−")
 
 
+def trimmed(text: str) -> str:
+    """Take the zeros that say nothing off the end of a number that `number` wrote."""
+    return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+
+
 def rounded(value: float, digits: int = 5) -> float:
     """Round to significant digits, for numbers that are only drawn."""
     return float(f"{value:.{digits - 1}e}")
+
+
+def grouped(count: int) -> str:
+    """Write a count, its thousands apart from five digits on."""
+    return f"{count:,}".replace(",", "\u202f") if count >= 10_000 else str(count)
+
+
+def brief(count: int) -> str:
+    """Write a count where there is little room, `29.8k`."""
+    size, letter = next(((s, c) for s, c in ((10**6, "M"), (10**3, "k")) if count >= 10 * s), (1, ""))
+    return f"{count / size:.3g}{letter}" if letter else str(count)
+
+
+def share(part: int, whole: int) -> str:
+    """Write a share in percent with two digits; one of none or of all only where it is so."""
+    if part in (0, whole):
+        return "0 %" if part == 0 else "100 %"
+    percent = 100.0 * part / whole
+    if percent < 0.1:
+        return "< 0.1 %"
+    if percent > 99.9:
+        return "> 99.9 %"
+    return f"{percent:.0f} %" if 10.0 <= percent <= 99.0 else f"{percent:.1f} %"

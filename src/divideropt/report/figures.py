@@ -1,4 +1,4 @@
-"""Plotly figures of the front and of the runs. Colours of text and grids are the page's, which knows the theme."""
+"""Plotly figures of the front. Colours of text and grids are the page's, which knows the theme."""
 
 import html
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,10 +10,11 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
-from divideropt.report.data import ObjectiveFacts, ReportData
+from divideropt.report.data import ReportData
 from divideropt.report.display import rounded
+from divideropt.report.facts import ObjectiveFacts
 from divideropt.report.front import Design
-from divideropt.report.palette import DASHES, Mark, marks
+from divideropt.report.palette import Mark, marks
 
 MOST_PROJECTIONS = 6
 """Pairs of objectives that are drawn: all of up to four objectives."""
@@ -26,6 +27,15 @@ CHOSEN = "chosen"
 
 SMALLEST = 1e-12
 """Residuals are drawn no lower, where the axis would have no place for zero."""
+
+MANY = 1500
+"""Designs from which on the marks of a projection are smaller."""
+
+MARGIN = 0.05
+"""Room between the outermost points and the frame, in shares of the front's extent."""
+
+BEHIND = 0.35
+"""How far the axes go beyond the front, where something was tried there, in shares of its extent."""
 
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif"
 """Fonts that are there: none is fetched."""
@@ -71,19 +81,6 @@ def projections(data: ReportData) -> list[tuple[tuple[int, int], go.Figure]]:
     """Draw the front on pairs of objectives: the pair, and its figure."""
     pairs = list(combinations(range(len(data.objectives)), 2))[:MOST_PROJECTIONS]
     return [(pair, _projection(data, data.objectives[pair[0]], data.objectives[pair[1]])) for pair in pairs]
-
-
-def hypervolume(data: ReportData) -> go.Figure:
-    """Draw each run's hypervolume against its evaluations."""
-    histories = {run.name: run.hypervolumes for run in data.runs}
-    return _histories(data, histories, "hypervolume", zero=True)
-
-
-def least_objective(data: ReportData) -> go.Figure:
-    """Draw each run's least value of the only objective against its evaluations."""
-    facts = data.objectives[0]
-    histories = {run.name: [facts.axis.scaled(value) for value in run.least] for run in data.runs}
-    return _histories(data, histories, f"least {label(facts)}", zero=False)
 
 
 def residuals(data: ReportData) -> go.Figure:
@@ -144,15 +141,31 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
             y=y,
             name=name,
             mode="markers",
-            marker={"color": mark.colour, "symbol": mark.shape, "size": 6, "opacity": mark.opacity},
+            marker={
+                "color": mark.colour,
+                "symbol": mark.shape,
+                "size": 6 if len(data.drawn) < MANY else 4,
+                "opacity": mark.opacity,
+            },
             customdata=_ids(designs),
             hovertemplate=hover({"x": first, "y": second}),
         )
     figure.add_scatter(**ring(13), x=[], y=[])
-    figure.update_xaxes(title_text=label(first), rangemode="normal")
-    figure.update_yaxes(title_text=label(second))
+    figure.update_xaxes(title_text=label(first), range=_range(data, first))
+    figure.update_yaxes(title_text=label(second), range=_range(data, second))
     figure.update_layout(shapes=list(goal_lines(first, second)), dragmode="select")
     return figure
+
+
+def _range(data: ReportData, facts: ObjectiveFacts) -> list[float]:
+    """What an axis shows at first: the front, the goal, and of what was tried what is not far behind."""
+    values = [data.front[i].objectives[facts.index] for i in data.drawn]
+    values += [] if facts.goal is None else [facts.goal]
+    low, high = min(values), max(values)
+    wide = (high - low) or abs(high) or 1.0
+    worst = data.tried.objectives[:, facts.index].max(initial=high)
+    top = min(worst, high + BEHIND * wide)
+    return [rounded(facts.axis.scaled(low - MARGIN * wide)), rounded(facts.axis.scaled(top + MARGIN * wide))]
 
 
 def goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[str, Any]]:
@@ -164,29 +177,6 @@ def goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[s
     if second.goal is not None:
         at = second.axis.scaled(second.goal)
         yield style | {"y0": at, "y1": at, "x0": 0, "x1": 1, "xref": "paper"}
-
-
-def _histories(data: ReportData, histories: Mapping[str, Sequence[float]], title: str, *, zero: bool) -> go.Figure:
-    figure = go.Figure(layout=layout(height=380, margin={"l": 64, "r": 16, "t": 12, "b": 52}))
-    style = marks(data.strategies)
-    seeds: dict[str, int] = dict.fromkeys(data.strategies, 0)
-    for run in data.runs:
-        dash = DASHES[seeds[run.strategy] % len(DASHES)]
-        seeds[run.strategy] += 1
-        figure.add_scatter(
-            x=list(run.marks),
-            y=[None if value != value else rounded(value) for value in histories[run.name]],  # noqa: PLR0124 (NaN)
-            name=plain(run.name),
-            mode="lines",
-            line={"color": style[run.strategy].colour, "dash": dash, "width": 2},
-            hovertemplate=f"{plain(run.name)}<br>%{{x}} evaluations<br>%{{y:.4~g}}<extra></extra>",
-        )
-    figure.update_xaxes(title_text="evaluations", rangemode="tozero")
-    figure.update_yaxes(title_text=title, rangemode="tozero" if zero else "normal")
-    figure.update_layout(
-        showlegend=True, legend={"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"}
-    )
-    return figure
 
 
 def _by_strategy(data: ReportData) -> Iterator[tuple[str, Mark, list[Design]]]:

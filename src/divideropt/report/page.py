@@ -1,30 +1,36 @@
 """The report's page: frozen data to one HTML file."""
 
+import base64
 import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from divideropt.analysis import Summary
 from divideropt.report.comparison_figure import comparison_figure
+from divideropt.report.convergence_figure import EARLY, convergence_figure
+from divideropt.report.convergence_tables import convergence_table, unequal
 from divideropt.report.cost_figure import FRONTS, cost_figures, kind_of
 from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
 from divideropt.report.data import MOST_ROWS, ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
-from divideropt.report.display import Axis, number, rounded
+from divideropt.report.display import Axis, brief, grouped, number, rounded, share
 from divideropt.report.document import drawn, render, save
-from divideropt.report.figures import (
-    front_3d,
-    hypervolume,
-    least_objective,
-    projections,
-    residuals,
-)
+from divideropt.report.failing import FEW
+from divideropt.report.failing_tables import along_table, bounds_table
+from divideropt.report.figures import front_3d, projections, residuals
 from divideropt.report.palette import COLOURS, Mark, marks
+from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.sensitivity_figures import index_bars
+from divideropt.report.sheets import sheets_payload
+from divideropt.report.sketch_svg import DEFS, light_style
+from divideropt.report.sketches import sketch_payload
 from divideropt.report.step_figure import step_figure, step_window
+from divideropt.report.summary_tables import goals_table
 from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
 from divideropt.store import Store
 
@@ -67,10 +73,15 @@ def render_report(data: ReportData) -> str:
         marks=marks(data.strategies),
         counts={name: sum(d.strategy == name for d in data.front) for name in data.strategies},
         tables={
+            "goals": goals_table(data.headline),
             "best": best_table(data),
             "front": front_table(data, MOST_ROWS),
             "runs": runs_table(data),
             "outcomes": outcome_table(data),
+            "along": along_table(data.failing),
+            "bounds": bounds_table(data.failing),
+            "convergence": convergence_table(data.tracks),
+            "versions": versions_table(data.provenance),
             "choosing": choosing_table(data),
             "strategies": strategies_table(data),
             "tests": rank_table(data),
@@ -78,8 +89,15 @@ def render_report(data: ReportData) -> str:
             "reasons": reasons_table(data),
             "volumes": volumes_table(data),
         },
+        unequal=unequal(data.tracks),
+        share=share,
+        early=EARLY,
+        few=FEW,
+        grouped=grouped,
+        brief=brief,
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
+        rounded=[] if data.sheets is None else [name.replace("_", " ") for name in data.sheets.rounded],
         number=number,
         verified_words=lambda design: verified_words(design, data),
         most_rows=MOST_ROWS,
@@ -91,16 +109,13 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
     found = []
     if data.front:
         found += _front_figures(data)
-    if any(run.hypervolumes for run in data.runs):
-        found.append(drawn("hypervolume", hypervolume(data)))
+    found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
     if data.cost is not None:
         for pair, figure in cost_figures(data):
             names = " and ".join(data.objectives[i].axis.words for i in pair)
             found.append(drawn(f"cost-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
     if data.kkt.computed:
         found.append(drawn("residuals", residuals(data)))
-    if len(data.objectives) == 1:
-        found.append(drawn("least", least_objective(data)))
     if data.comparison is not None:
         found.append(drawn("indicators", comparison_figure(data.comparison)))
     if data.front and data.responses is not None:
@@ -118,7 +133,7 @@ def _front_figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("front", front_3d(data), webgl=True, axes=[0, 1, 2]))
     for pair, figure in projections(data):
         names = " and ".join(data.objectives[i].axis.words for i in pair)
-        found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
+        found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names, dotted=True))
     return found
 
 
@@ -135,17 +150,27 @@ def _selection(data: ReportData) -> dict[str, Any]:
     """What the page needs to select designs and to show them."""
     if not data.front:
         return {"selected": None}
-    responses = data.responses
+    responses, designs = data.responses, _designs(data)
     return {
         "fields": [_field(facts.axis, lower=facts.lower, upper=facts.upper) for facts in data.variables]
         + [_field(facts.axis, goal=facts.goal) for facts in data.objectives],
         "objectives": len(data.objectives),
-        "designs": _designs(data),
+        "designs": designs,
+        "tried": _tried(data),
         "responses": {} if responses is None else _curves(responses),
         "selected": _first(data),
         "name": data.name,
         "simulates": responses is not None,
+        **_dimensions(data, designs["ids"]),
     }
+
+
+def _dimensions(data: ReportData, ids: list[str]) -> dict[str, Any]:
+    """What the page needs to draw its designs to scale, and to list their dimensions."""
+    if data.sketches is None:
+        return {}
+    found: dict[str, Any] = {"sketch": {**sketch_payload(data.sketches, ids), "defs": DEFS, "style": light_style()}}
+    return found if data.sheets is None else {**found, "sheets": sheets_payload(data.sheets)}
 
 
 def _curves(responses: Responses) -> dict[str, Any]:
@@ -189,6 +214,16 @@ def _designs(data: ReportData) -> dict[str, Any]:
         "attainment": None
         if data.front[0].attainment is None
         else [None if d.attainment is None else rounded(d.attainment) for d in known.values()],
+    }
+
+
+def _tried(data: ReportData) -> dict[str, Any]:
+    """What the front is drawn against: single precision, a text a column, since the page draws it by itself."""
+    largest = np.finfo("<f4").max
+    columns = np.clip(data.tried.objectives, -largest, largest).astype("<f4").T
+    return {
+        "values": [base64.b64encode(column.tobytes()).decode() for column in columns],
+        "feasible": base64.b64encode(data.tried.feasible.astype("u1").tobytes()).decode(),
     }
 
 

@@ -1,16 +1,16 @@
-"""What each run did: its budget, how its simulations ended, how its hypervolume grew."""
+"""What each run did: its budget, how its simulations ended, how its hypervolume and its goal attainment grew."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.analysis import Summary, hypervolume_history, repeatable
+from divideropt.analysis import Summary, attainment_history, hypervolume_history, repeatable
 from divideropt.campaign.ending import Ended
 from divideropt.campaign.plan import Run
 from divideropt.models import Outcome
 from divideropt.models.base import FloatArray
-from divideropt.problem import Told
+from divideropt.problem import Objective, Told
 
 MARKS = 60
 """Points of a run's history: half of them early, where most is gained."""
@@ -34,7 +34,9 @@ class RunFacts:
         examples: A sentence of the first simulation that ended so.
         marks: Numbers of evaluations at which the histories are taken.
         hypervolumes: Hypervolume up to each mark; empty without a reference point.
-        least: Least value of the first objective up to each mark, NaN before the first feasible design.
+        attainments: Least max λ_i of (3.24) up to each mark, infinite before the first feasible design; empty where
+            an objective has no goal.
+        least: Least value of the first objective up to each mark, infinite before the first feasible design.
         ending: Why it ended, in a sentence; "" before it has.
         best: Row of the log of the design with the least max λ_i, and that value; None where there is none.
     """
@@ -49,6 +51,7 @@ class RunFacts:
     examples: Mapping[str, str]
     marks: tuple[int, ...]
     hypervolumes: tuple[float, ...]
+    attainments: tuple[float, ...]
     least: tuple[float, ...]
     best: tuple[int, float] | None
     ending: str
@@ -64,17 +67,27 @@ class RunFacts:
         return self.hypervolumes[-1] if self.hypervolumes else None
 
 
-def read_run(run: Run, log: Summary, reference: FloatArray | None, ended: Ended | None) -> RunFacts:
+def read_run(
+    run: Run,
+    log: Summary,
+    objectives: Sequence[Objective],
+    reference: FloatArray | None,
+    ended: Ended | None,
+    shortest: int,
+) -> RunFacts:
     """Say what a run did.
 
     Args:
         run: As planned.
         log: Its evaluations so far.
+        objectives: With goals or not.
         reference: The reference point, shape (k,), or None.
         ended: How it ended, None before it has.
+        shortest: Evaluations of the shortest run of its strategy, at whose marks all of them are compared.
     """
     told = log.told
-    marks = _marks(log.evaluations, told.F.shape[1])
+    common = marks_of(min(shortest, log.evaluations), len(objectives))
+    marks = tuple(sorted({*marks_of(log.evaluations, len(objectives)), *common}))
     volumes = () if reference is None else tuple(hypervolume_history(told, reference, marks))
     return RunFacts(
         run.name,
@@ -87,13 +100,15 @@ def read_run(run: Run, log: Summary, reference: FloatArray | None, ended: Ended 
         log.examples,
         marks,
         volumes,
+        () if any(o.goal is None for o in objectives) else tuple(attainment_history(told, objectives, marks)),
         _least(told, marks),
         None if log.best is None else (log.best.row, log.best.value),
         "" if ended is None else ended.text,
     )
 
 
-def _marks(evaluations: int, objectives: int) -> tuple[int, ...]:
+def marks_of(evaluations: int, objectives: int) -> tuple[int, ...]:
+    """Numbers of evaluations at which a run of so many is looked at; none of none."""
     if evaluations == 0:
         return ()
     count = (MARKS if objectives < 5 else COSTLY_MARKS) // 2
@@ -105,4 +120,4 @@ def _least(told: Told, marks: tuple[int, ...]) -> tuple[float, ...]:
     """Running minimum of the first objective over the feasible designs."""
     values = np.where(told.feasible, told.F[:, 0], np.inf)
     running = np.minimum.accumulate(values) if len(values) else values
-    return tuple(float(running[m - 1]) if np.isfinite(running[m - 1]) else float("nan") for m in marks)
+    return tuple(float(running[m - 1]) for m in marks)

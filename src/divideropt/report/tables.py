@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from divideropt.analysis import Kkt, Verified
 from divideropt.models import Outcome
 from divideropt.report.data import ReportData
-from divideropt.report.display import number
+from divideropt.report.display import number, share
 from divideropt.report.front import Design
 
 LAST = "1e300"
@@ -108,8 +108,8 @@ def runs_table(data: ReportData) -> Table:
         headings.append(Heading("hypervolume", title="share of the reference box that the run dominates"))
     rows = []
     for run in data.runs:
-        share = sum(design.run == run.name for design in data.front)
-        counts = (run.seed, run.evaluations, run.budget, run.feasible, share)
+        shared = sum(design.run == run.name for design in data.front)
+        counts = (run.seed, run.evaluations, run.budget, run.feasible, shared)
         cells = [Cell(run.name, run.name), *(Cell(str(count), str(count)) for count in counts)]
         if measured:
             cells.append(Cell("–" if run.hypervolume is None else f"{run.hypervolume:.4f}"))
@@ -124,17 +124,20 @@ def outcome_table(data: ReportData) -> Table:
     outcomes = [o for o in Outcome if any(o in run.outcomes for run in data.runs)]
     headings = (
         Heading("outcome", numeric=False),
+        Heading("designs"),
+        Heading("share"),
         *(Heading(strategy) for strategy in data.strategies),
-        Heading("for example", numeric=False),
+        Heading("in its own words, the first of them", numeric=False),
     )
     rows = []
     for outcome in outcomes:
         example = next((run.examples[outcome] for run in data.runs if outcome in run.examples), "")
-        counts = (
+        counts = [
             sum(run.outcomes.get(outcome, 0) for run in data.runs if run.strategy == strategy)
             for strategy in data.strategies
-        )
-        rows.append(Row("", (Cell(outcome), *(Cell(str(count)) for count in counts), Cell(example))))
+        ]
+        words = [outcome, str(sum(counts)), share(sum(counts), data.failing.designs), *map(str, counts), example]
+        rows.append(Row("", tuple(Cell(word) for word in words)))
     return Table(headings, tuple(rows))
 
 

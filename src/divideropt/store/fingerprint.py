@@ -44,6 +44,11 @@ def keep_fingerprint(path: Path, allowed: Check) -> str | None:
 _JUDGE = "whether that matters is seen when what is logged is compared, bit by bit"
 
 
+def read_fingerprints(path: Path) -> tuple[dict[str, str], ...]:
+    """Return a store's list of those that wrote to it, the latest last; empty where nobody knows."""
+    return tuple(_read(path) or ())
+
+
 def fingerprint() -> dict[str, str]:
     """Versions by name, and the processor as the compiler knows it."""
     features: Mapping[str, bool] = binding.get_host_cpu_features()

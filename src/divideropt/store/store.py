@@ -1,7 +1,6 @@
 """A campaign's folder: the campaign as resolved, the runs' logs, the fronts, the report."""
 
-import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from copy import copy
 from datetime import UTC, datetime
@@ -9,9 +8,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 import pyarrow as pa
-from filelock import FileLock, Timeout
 
-from divideropt.errors import DamagedFileError, StoreError, StoreInUseError, UsageError
+from divideropt.errors import DamagedFileError, StoreError, UsageError
+from divideropt.store.campaign_file import read_campaign, write_campaign
 from divideropt.store.endings import EndingRecord, read_ending, write_ending
 from divideropt.store.files import (
     check_links,
@@ -21,7 +20,8 @@ from divideropt.store.files import (
     publish,
     publish_folder,
 )
-from divideropt.store.fingerprint import keep_fingerprint
+from divideropt.store.fingerprint import keep_fingerprint, read_fingerprints
+from divideropt.store.locks import held
 from divideropt.store.log import RunLog
 from divideropt.store.owner import Owner, holder
 from divideropt.store.parts import Parts
@@ -31,17 +31,11 @@ from divideropt.store.tables import check_replaceable, read_table, write_table
 STUDIES = "sensitivity"
 """Where a campaign's store has its sensitivity studies, each a store in a folder of its own."""
 
-LARGEST_CAMPAIGN = 2**22
-"""No campaign as resolved is larger [bytes]: a campaign's file may have a quarter of it."""
-
 FEW = 10
 """So many stores are named where one was looked for in their folder."""
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
-
-
-_DIGEST = "# written by divideropt, which refuses it where it was changed; sha256: "
 
 
 class Store:
@@ -105,16 +99,7 @@ class Store:
         """
         if not self.exists:
             raise UsageError(f"{self.folder}: no store there ({self._instead()}")
-        try:
-            if self.campaign_path.stat().st_size > LARGEST_CAMPAIGN:
-                raise self._campaign_damaged(f"larger than {LARGEST_CAMPAIGN // 2**20} MiB")
-            content = self.campaign_path.read_bytes()
-        except OSError as error:
-            raise self._campaign_damaged(str(error.strerror)) from error
-        first, _, text = content.partition(b"\n")
-        if first != _digest(text):
-            raise self._campaign_damaged("changed since it was written")
-        return text.decode("utf-8")
+        return read_campaign(self.campaign_path)
 
     def _instead(self) -> str:
         """Say why the folder is no store, and what may have been meant."""
@@ -128,9 +113,6 @@ class Store:
         hint = f"did you mean {self.folder.with_name(meant[0])}?" if meant else "name the folder of a store"
         return f"no campaign.yaml); {hint}"
 
-    def _campaign_damaged(self, reason: str) -> DamagedFileError:
-        return DamagedFileError(f"{self.campaign_path}: damaged ({reason}); restore it, or start anew (--fresh)")
-
     def write_campaign(self, text: str) -> None:
         """Replace the campaign as resolved.
 
@@ -138,8 +120,7 @@ class Store:
             DiskError: The disk refused.
         """
         make_folder(self.folder)
-        content = text.encode("utf-8")
-        publish(self.campaign_path, lambda p: p.write_bytes(_digest(content) + b"\n" + content), self._check_owner)
+        write_campaign(self.campaign_path, text, self._check_owner)
 
     def write_report(self, text: str) -> Path:
         """Replace the report and return its path."""
@@ -242,7 +223,11 @@ class Store:
         Raises:
             DiskError: The disk refused.
         """
-        return keep_fingerprint(self.folder / ".writers.json", self._check_owner)
+        return keep_fingerprint(self._writers_path, self._check_owner)
+
+    def writers(self) -> tuple[dict[str, str], ...]:
+        """Return what each computed with that wrote to the store, the latest last; none where that is not known."""
+        return read_fingerprints(self._writers_path)
 
     @contextmanager
     def writing_run(self, run: str) -> Iterator[None]:
@@ -251,7 +236,7 @@ class Store:
         Raises:
             StoreInUseError: Another process keeps holding it.
         """
-        with _held(self.status_folder, f"{run}.lock", LOCK_PATIENCE, lambda: f"another process is writing run {run}"):
+        with held(self.status_folder, f"{run}.lock", LOCK_PATIENCE, lambda: f"another process is writing run {run}"):
             yield
 
     def move_aside(self) -> Path | None:
@@ -276,6 +261,10 @@ class Store:
             with disk_errors(self.folder):
                 whole.rename(aside)
         return aside
+
+    @property
+    def _writers_path(self) -> Path:
+        return self.folder / ".writers.json"
 
     @property
     def _owner_path(self) -> Path:
@@ -321,26 +310,4 @@ class Store:
         def reason() -> str:
             return f"another divideropt is writing to this store: {holder(self._owner_path)}"
 
-        return _held(self.folder, ".lock", 0.0, reason)
-
-
-def _digest(text: bytes) -> bytes:
-    return f"{_DIGEST}{hashlib.sha256(text).hexdigest()}".encode()
-
-
-@contextmanager
-def _held(folder: Path, name: str, patience: float, reason: Callable[[], str]) -> Iterator[None]:
-    """Hold a lock of the kernel's, which ends with the process that has it."""
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(f"{folder}: a file, not a folder; name another --store")
-    make_folder(folder)
-    with disk_errors(folder):
-        lock = FileLock(folder / name, timeout=patience)
-        try:
-            lock.acquire()
-        except Timeout:
-            raise StoreInUseError(f"{folder}: {reason()}; wait until it is done, or name another --store") from None
-    try:
-        yield
-    finally:
-        lock.release()
+        return held(self.folder, ".lock", 0.0, reason)

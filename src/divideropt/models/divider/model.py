@@ -9,9 +9,11 @@ from functools import cache, cached_property, partial
 import numpy as np
 
 from divideropt.models.base import FloatArray, Parameter, Quantity, Verdict
+from divideropt.models.dimensions import Dimension, Sketch
 from divideropt.models.divider.batch import simulate_batch
 from divideropt.models.divider.coefficients import options_record, rules_record, span_records
 from divideropt.models.divider.course import empty_course
+from divideropt.models.divider.dimensions import DIMENSIONS, measured, remade
 from divideropt.models.divider.formulations import FORMULATIONS, Formulation
 from divideropt.models.divider.metrics import Findings, measure
 from divideropt.models.divider.parameters import PARAMETERS
@@ -21,6 +23,7 @@ from divideropt.models.divider.response import Response, respond
 from divideropt.models.divider.result_record import NOT_FOLLOWED, SOUND
 from divideropt.models.divider.run_kernels import RELAXATION_STEPS
 from divideropt.models.divider.scenario import Scenario
+from divideropt.models.divider.sketch import divider_sketch
 from divideropt.models.divider.states import N_STATES
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
 from divideropt.models.divider.verdicts import OK, verdict_of
@@ -142,6 +145,24 @@ class Divider:
         """
         method = REFERENCE_METHOD if self.settings.method != REFERENCE_METHOD else OTHER_REFERENCE_METHOD
         return replace(self, settings=solver_settings(method, REFERENCE_RTOL, max_steps=REFERENCE_MAX_STEPS))
+
+    @property
+    def dimensions(self) -> Mapping[str, Dimension]:
+        """Every dimension, in the order of a row of `measured`."""
+        return DIMENSIONS
+
+    @cached_property
+    def sketch(self) -> Sketch:
+        """The drawing for any design."""
+        return divider_sketch()
+
+    def measured(self, designs: FloatArray) -> FloatArray:
+        """Return the dimensions of designs, shape (n, number of dimensions), SI."""
+        return measured(designs, self.reading)
+
+    def remade(self, design: Mapping[str, float], dimensions: Mapping[str, float]) -> Mapping[str, float]:
+        """Return the parameters of a design some of whose dimensions are others, by name, SI."""
+        return remade(design, dimensions)
 
     def respond(self, parameters: Mapping[str, float], reading: Formulation | None = None) -> Response:
         """Simulate one design and keep its response.

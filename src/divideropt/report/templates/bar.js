@@ -55,10 +55,8 @@ function yamlOf(rows) {
 }
 
 function save(text, ending, kind) {
-  const address = URL.createObjectURL(new Blob([text], { type: kind }));
   const name = report.name.replace(/[^A-Za-z0-9_-]+/g, "-").slice(0, 64) || "campaign";
-  make("a", undefined, { href: address, download: name + "-selection" + ending }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 10000);
+  offer(text, name + "-selection" + ending, kind);
 }
 
 function followInBar() {
