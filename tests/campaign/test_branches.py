@@ -147,6 +147,7 @@ def test_fronts_status_report_and_tables_know_it(store):
     assert [(r.name, r.ending == words) for r in report.runs][:2] == [("nsga2-1", True), ("nsga2-1-branch-1", False)]
     assert report.comparison is not None
     assert [s.run for s in report.comparison.scores] == ["nsga2-1-branch-1", "nsga2-2", "complex-1"]
+    assert {line.run for track in report.tracks for line in track.lines} == set(names[1:])
     assert divideropt.compare(store).table["run"].tolist() == ["nsga2-1-branch-1", "nsga2-2", "complex-1"]
     assert export_store(Store(store), "parquet").evaluations == 60 + 96 + 96 + 60
     assert len(divideropt.open(store).front("nsga2-1-branch-1")) > 0

@@ -178,7 +178,8 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
-    shortest = _shortest(runs, logs)
+    active = active_runs(campaign, store)
+    shortest = _shortest(active, logs)
     facts = tuple(
         read_run(run, logs[run.name], problem.objectives, reference, endings[run.name], shortest.get(run.strategy, 0))
         for run in runs
@@ -203,7 +204,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         constraints_of(problem),
         facts,
         headline_of(front, best, objectives),
-        tracks_of(facts, objectives),
+        tracks_of([found for run, found in zip(runs, facts, strict=True) if run in active], objectives),
         failing_of(failures, breaches, variables, bounds_of(problem)),
         front,
         convergence(table),
@@ -211,7 +212,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _drawn(front),
         read_tried(logs),
         best,
-        _comparison(facts, logs, problem, reference, {run.name for run in active_runs(campaign, store)}),
+        _comparison(facts, logs, problem, reference, {run.name for run in active}),
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
