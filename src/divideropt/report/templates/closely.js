@@ -26,9 +26,8 @@ function tellResponse() {
   const figure = report.figures.find((other) => other.id === "response");
   const { lead } = selection;
   const others = [...selection.ids].filter((id) => id !== lead);
-  const what = figure ? "Step response of " : "Selected design: ";
   byId("selected-title").textContent =
-    lead === null ? "No design selected" : what + lead + (others.length ? " and " + counted(others.length, "other") : "");
+    lead === null ? "No design selected" : "Selected design: " + lead + (others.length ? " and " + counted(others.length, "other") : "");
   if (!figure) return undefined;
   const response = lead === null ? undefined : report.responses[lead];
   byId("unstored").hidden = lead === null || Boolean(response);
