@@ -1,8 +1,6 @@
 """Small stores, made once: of the divider, and of an analytic model of any number of objectives."""
 
 import io
-import os
-import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from browsing import PATIENCE, Opened
 from divideropt.campaign.load import parse_campaign
@@ -118,28 +116,15 @@ parallel: {{backend: sequential}}
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    path = shutil.which("chromium") or shutil.which("chromium-browser")
-    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
-        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
-    if path is None:
-        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
-    with sync_playwright() as playwright:
-        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=path, args=args)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Opened]]:
     """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
     folder = tmp_path_factory.mktemp("pages")
 
     def open_page(text: str, script: str = "") -> Opened:
         path = folder / f"{len(list(folder.iterdir()))}.html"
         path.write_text(text, encoding="utf-8")
-        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
+        found = Opened(context.new_page())
         found.page.set_default_timeout(PATIENCE)
         found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
         found.page.on("pageerror", lambda error: found.errors.append(str(error)))
@@ -158,4 +143,5 @@ def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callab
         found.page.wait_for_selector("html[data-drawn]")
         return found
 
-    return open_page
+    yield open_page
+    context.close()

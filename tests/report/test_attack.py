@@ -103,11 +103,10 @@ def test_nothing_of_an_attack_runs_or_leaves(opened, attacking):
     row = found.page.locator("#front-table tbody tr").nth(1)
     row.click()
     found.page.locator("#front-table th button").first.click()
-    point = found.page.locator("#projection-0-1 path.point").first
-    point.scroll_into_view_if_needed()
-    box = point.bounding_box()
-    found.page.mouse.move(box["x"] - 1, box["y"])
-    found.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    found.page.locator("#projection-0-1").scroll_into_view_if_needed()
+    dot = found.dots("0-1")[0]
+    found.page.mouse.move(dot["x"] - 3, dot["y"])
+    found.page.mouse.move(dot["x"], dot["y"])
     found.page.wait_for_selector("#projection-0-1 .hoverlayer text")
     assert "%{x}" in found.page.locator("#projection-0-1 .hoverlayer").text_content()
     assert found.page.evaluate(LEFT_BEHIND) == CLEAN
@@ -128,12 +127,16 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         sets=tuple(replace(r, name=hostile) for r in data.responses.sets),
         notes=(hostile,),
     )
+    rows = {d.design_id: data.sketches.rows[was.design_id] for d, was in zip(designs, data.front, strict=True)}
     changed = replace(
         data,
+        sketches=replace(data.sketches, rows={**data.sketches.rows, **rows, hostile: 0}),
         name=hostile,
         campaign=hostile,
         front=designs,
         responses=responses,
+        sketches=None,  # whose own test has hostile names
+        sheets=None,
         runs=tuple(
             replace(
                 run,

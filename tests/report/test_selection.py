@@ -1,5 +1,6 @@
 """One selection that every view of the report follows: however it is made, in the address, and saved to files."""
 
+import base64
 import io
 import json
 import re
@@ -13,16 +14,17 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 from ruamel.yaml import YAML
 
-from browsing import NO_WEBGL, PATIENCE, Opened, quiet
+from browsing import NO_WEBGL, PATIENCE, Opened, borne_out, quiet
 from divideropt.campaign.designs import evaluate_designs, read_designs
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_model
 from divideropt.campaign.simulate import chosen_design
 from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.scenarios import BASE
-from divideropt.report.data import MOST_DRAWN, ReportData, read_report
+from divideropt.report.data import ReportData, read_report
 from divideropt.report.data import _drawn as drawn
 from divideropt.report.page import render_report
+from divideropt.report.tried import Tried
 from divideropt.store import Store
 
 CAMPAIGN = """
@@ -35,14 +37,39 @@ strategies: {nsga2: {population: 8, generations: 2, seeds: [1]}}
 
 COUNTS = """() => ({
     lines: Number(document.querySelector("#parallel").dataset.selected || 0),
-    projections: ["0-1", "0-2", "1-2"].map((pair) => [...document.querySelectorAll(
-        `#projection-${pair} .trace:not(:last-child) path.point`)].filter((p) => p.style.opacity > 0.5).length),
+    projections: ["0-1", "0-2", "1-2"].map((pair) => document.getElementById(`projection-${pair}`).dataset.selected)
+        .map((count) => (count === "" ? null : Number(count))),
     solid: document.getElementById("front").data?.find((trace) => trace.name === "chosen").x.length ?? null,
     rows: document.querySelectorAll("#front-table tr[aria-selected=true]").length,
     compared: document.querySelectorAll("#compared tbody tr").length,
     address: location.hash.replace(/&.*/, "").split(",").flatMap((run) => run.split(".")).length,
 })"""
 """How many designs each view tells from the others."""
+
+CLOUD = """pair => {
+    const canvas = document.querySelector(`#projection-${pair} canvas.tried`);
+    if (canvas.hidden || !canvas.width) return 0;
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((_, i) => i % 4 === 3 && data[i] > 0).length;
+}"""
+"""How many pixels of a projection have something on them that was tried."""
+
+HUED = """async (png) => {
+    const image = new Image();
+    image.src = "data:image/png;base64," + png;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) {
+        if (Math.max(...data.slice(i, i + 3)) - Math.min(...data.slice(i, i + 3)) > 80) count += 1;
+    }
+    return count;
+}"""
+"""How many pixels of a picture are neither black, white nor grey."""
 
 INK = """([from, to]) => {
     const canvas = document.querySelector("#parallel canvas.all");
@@ -121,6 +148,11 @@ def followed(found: Opened, count: int) -> None:
         "compared": compared,
         "address": count,
     }
+    rows = found.page.locator("#front-table tr[aria-selected=true]").evaluate_all(
+        "rows => rows.map(r => r.dataset.id)"
+    )
+    for pair in ("0-1", "0-2", "1-2"):
+        borne_out(found.dots(pair), rows)
 
 
 def upper_half(data: ReportData, axis: int) -> int:
@@ -159,7 +191,10 @@ def test_keys_brush_an_axis(report, data):
     assert end.get_attribute("aria-valuetext") == "11.00 mm"
     report.page.keyboard.press("Delete")
     expect(report.page.locator("#announced")).to_have_text("Nothing selected")
-    assert report.page.evaluate(COUNTS)["projections"] == [len(data.front)] * 3
+    assert report.page.evaluate(COUNTS)["projections"] == [None] * 3
+    for pair in ("0-1", "0-2", "1-2"):
+        borne_out(report.dots(pair), [])
+    expect(report.page.locator("#projection-0-1 canvas.all")).to_have_css("opacity", "1")
 
 
 def test_no_line_through_a_brush_is_no_design(report):
@@ -176,10 +211,7 @@ def test_a_box_in_a_projection_selects_what_is_in_it(report, data):
     into_view(report, "#projection-0-1")
     box = place.bounding_box()
     right = box["x"] + 0.4 * box["width"]
-    inside = report.page.eval_on_selector_all(
-        "#projection-0-1 .trace:not(:last-child) path.point",
-        "ps => ps.map(p => p.getBoundingClientRect()).map(b => b.x + b.width / 2)",
-    )
+    inside = [dot["x"] for dot in report.dots("0-1")]
     count = sum(x < right for x in inside)
     assert 1 < count < len(data.front)
     drag(report, (box["x"] + 1, box["y"] + 1), (right, box["y"] + box["height"] - 1))
@@ -190,6 +222,66 @@ def test_a_box_in_a_projection_selects_what_is_in_it(report, data):
     brush(report, 0, 0.5, -0.05)
     followed(report, upper_half(data, 0))
     assert report.count("#projection-0-1 .selectionlayer path") == 0, "its outline is gone"
+
+
+def test_a_lasso_selects_what_is_in_it(report, data):
+    into_view(report, "#projection-0-2")
+    dots = report.dots("0-2")
+    report.page.evaluate("Plotly.relayout('projection-0-2', { dragmode: 'lasso' })")
+    box = report.page.locator("#projection-0-2 .nsewdrag").first.bounding_box()
+    left, top, bottom = box["x"] + 2, box["y"] + 2, box["y"] + box["height"] - 2
+    middle = sorted(dot["x"] for dot in dots)[len(dots) // 2] + 0.5
+    mouse = report.page.mouse
+    mouse.move(left, top)
+    mouse.down()
+    for corner in ((left, bottom), (middle, bottom), (middle, top)):
+        mouse.move(*corner, steps=8)
+    mouse.up()
+    inside = [dot["x"] < middle for dot in dots]
+    assert 0 < sum(inside) < len(data.front)
+    followed(report, sum(inside))
+    report.page.evaluate("Plotly.relayout('projection-0-2', { dragmode: 'select' })")
+    quiet(report)
+
+
+def test_a_double_click_shows_all_that_was_tried_and_another_the_front(report, data):
+    into_view(report, "#projection-0-1")
+    shown = "() => document.getElementById('projection-0-1').layout.xaxis.range.map(Number)"
+    front = report.page.evaluate(shown)
+    double_click = "document.getElementById('projection-0-1').emit('plotly_deselect', null)"  # as plotly tells of one
+    report.page.evaluate(double_click)
+    report.page.wait_for_function(f"front => ({shown})()[1] > 1.2 * front[1]", arg=front)
+    whole = report.page.evaluate(shown)
+    largest = data.objectives[0].axis.scaled(data.tried.objectives[:, 0].max())
+    assert whole[1] > largest > front[1]
+    borne_out(report.dots("0-1"), [])
+    report.page.evaluate(double_click)
+    report.page.wait_for_function(f"front => String(({shown})()) === String(front)", arg=front)
+    borne_out(report.dots("0-1"), [])
+    quiet(report)
+
+
+def test_what_was_tried_can_be_left_out(report):
+    assert report.page.evaluate(CLOUD, "0-1") > 20
+    box = report.page.get_by_label("What was tried")
+    box.uncheck()
+    assert report.page.evaluate(CLOUD, "0-1") == 0
+    assert not report.page.locator("#projection-0-1 canvas.tried").is_visible()
+    box.check()
+    assert report.page.locator("#projection-0-1 canvas.tried").is_visible()
+
+
+def test_a_projections_picture_has_its_points(report, tmp_path):
+    into_view(report, "#projection-0-1")
+    report.page.locator("#projection-0-1").hover()
+    with report.page.expect_download() as waiting:
+        report.page.locator("#projection-0-1 [data-title='Download plot as a PNG']").click()
+    path = tmp_path / waiting.value.suggested_filename
+    waiting.value.save_as(path)
+    assert path.name == "projection-0-1.png"
+    inked = report.page.evaluate(HUED, base64.b64encode(path.read_bytes()).decode())
+    assert inked > 100, "the strategies' colours are in it, which only the canvases have"
+    quiet(report)
 
 
 def test_a_row_selects_and_another_joins(report, data):
@@ -426,7 +518,10 @@ def test_a_front_without_goals_or_responses_is_linked_too(opened, spheres, objec
 def test_a_front_of_five_thousand_is_light_and_drawn(browser: Browser, data: ReportData, tmp_path: Path):
     page = large_page(browser, data, tmp_path)
     assert (tmp_path / "large.html").stat().st_size < 9e6
-    assert page.locator("#projection-0-1 path.point").count() == MOST_DRAWN + 1
+    dots = Opened(page).dots("0-1")
+    assert len(dots) == 5000
+    borne_out(dots, [])
+    assert page.evaluate(CLOUD, "0-1") > 1000, "what was tried is drawn, too"
 
 
 def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
@@ -439,7 +534,12 @@ def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
         for design, row in zip(front, shaken, strict=True)
     )
     path = tmp_path / "large.html"
-    path.write_text(render_report(replace(data, front=front, drawn=drawn(front))), encoding="utf-8")
+    values = np.abs(random.normal(1.0, 0.5, (20_000, 3))) * data.front[0].objectives
+    tried = Tried(values, random.random(20_000) > 0.1, 25_000, 3)
+    rows = {d.design_id: data.sketches.rows[data.front[i % len(data.front)].design_id] for i, d in enumerate(front)}
+    sketches = replace(data.sketches, rows={**data.sketches.rows, **rows})
+    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried, sketches=sketches))
+    path.write_text(text, encoding="utf-8")
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(path.as_uri(), timeout=PATIENCE)
     page.wait_for_selector("html[data-drawn]", timeout=PATIENCE)

@@ -1,6 +1,6 @@
 """A store to what its report says: frozen, in the platform's units, without a word of how it is drawn."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,11 +22,12 @@ from divideropt.analysis import (
 from divideropt.analysis.breaches import all_breaches
 from divideropt.analysis.failures import all_failures
 from divideropt.analysis.summary import Best
+from divideropt.campaign.branches import active_runs, stored_runs
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import Run, build_problem, plan_runs, reference_of
+from divideropt.campaign.plan import Run, build_problem, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
@@ -52,10 +53,11 @@ from divideropt.report.setting import setting_of
 from divideropt.report.sheets import Sheets, read_sheets
 from divideropt.report.sketches import Sketches, read_sketches
 from divideropt.report.study_summary import StudySummary, study_summary
+from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
 
-MOST_DRAWN = 4000
-"""Designs of the front that the figures draw: SVG gets slow beyond."""
+MOST_DRAWN = 10_000
+"""Designs of the front that the figures draw: beyond, the page grows by its ids, and brushes get slow."""
 
 MOST_ROWS = 1000
 """Designs of the front in the page's table."""
@@ -88,6 +90,7 @@ class ReportData:
         kkt: How near to stationary its designs are.
         tolerance: Largest deviation of an objective that still counts as the same [%].
         drawn: Rows of the front that the figures draw.
+        tried: Evaluations of all runs, which the front is drawn against.
         best: The best of each strategy by goal attainment; empty where there are no goals.
         comparison: The strategies compared; None where there is one only, or nothing feasible.
         choosing: Designs of the front that are worth a look; None without a front.
@@ -116,6 +119,7 @@ class ReportData:
     kkt: Convergence
     tolerance: float
     drawn: tuple[int, ...]
+    tried: Tried
     best: tuple[Design, ...]
     comparison: Comparison | None
     choosing: Choosing | None
@@ -167,14 +171,15 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     """
     campaign = stored_campaign(store)
     text = store.read_campaign()
-    problem, runs = build_problem(campaign), plan_runs(campaign)
+    problem, runs = build_problem(campaign), stored_runs(campaign, store)
     schema = TableSchema.of(problem)
     if logs is None:
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
-    shortest = _shortest(runs, logs)
+    active = active_runs(campaign, store)
+    shortest = _shortest(active, logs)
     facts = tuple(
         read_run(run, logs[run.name], problem.objectives, reference, endings[run.name], shortest.get(run.strategy, 0))
         for run in runs
@@ -199,14 +204,15 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         constraints_of(problem),
         facts,
         headline_of(front, best, objectives),
-        tracks_of(facts, objectives),
+        tracks_of([found for run, found in zip(runs, facts, strict=True) if run in active], objectives),
         failing_of(failures, breaches, variables, bounds_of(problem)),
         front,
         convergence(table),
         campaign.verification.tolerance,
         _drawn(front),
+        read_tried(logs),
         best,
-        _comparison(facts, logs, problem, reference),
+        _comparison(facts, logs, problem, reference, {run.name for run in active}),
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
@@ -281,10 +287,14 @@ def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
 
 
 def _comparison(
-    facts: Sequence[RunFacts], logs: Mapping[str, Summary], problem: Problem, reference: FloatArray | None
+    facts: Sequence[RunFacts],
+    logs: Mapping[str, Summary],
+    problem: Problem,
+    reference: FloatArray | None,
+    active: Collection[str],
 ) -> Comparison | None:
-    """Compare the strategies after as many evaluations as every run has."""
-    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts]
+    """Compare the strategies after as many evaluations as every run has; a run that branched by its last branch."""
+    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts if run.name in active]
     if len({c.group for c in contenders if c.evaluations}) < 2:
         return None
     return compare(contenders, problem.objectives, reference)

@@ -11,9 +11,9 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 from plotly.utils import PlotlyJSONEncoder
 
+from divideropt.report.bundle import plotly_for
 from divideropt.report.palette import COLOURS
 from divideropt.store.files import disk_errors, publish
 
@@ -31,6 +31,7 @@ SCRIPTS = (
     "designs.js",
     "selection.js",
     "figures.js",
+    "points.js",
     "parallel.js",
     "brushes.js",
     "closely.js",
@@ -59,15 +60,16 @@ def render(template: str, payload: Mapping[str, Any], **context: Any) -> str:
         The document.
     """
     script = _script()
+    plotly = plotly_for(trace.get("type", "scatter") for figure in payload["figures"] for trace in figure["data"])
     return (
         _environment()
         .get_template(template)
         .render(
             **context,
             style=Markup(_asset("report.css") + _asset("sketch.css")),
-            plotly=Markup(get_plotlyjs()),
+            plotly=Markup(plotly),
             script=Markup(script),
-            scripts=" ".join(_hash(text) for text in (get_plotlyjs(), script)),
+            scripts=" ".join(_hash(text) for text in (plotly, script)),
             payload=_embedded({"config": CONFIG, "colours": COLOURS, **payload}),
         )
     )

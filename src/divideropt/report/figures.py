@@ -28,6 +28,15 @@ CHOSEN = "chosen"
 SMALLEST = 1e-12
 """Residuals are drawn no lower, where the axis would have no place for zero."""
 
+MANY = 1500
+"""Designs from which on the marks of a projection are smaller."""
+
+MARGIN = 0.05
+"""Room between the outermost points and the frame, in shares of the front's extent."""
+
+BEHIND = 0.35
+"""How far the axes go beyond the front, where something was tried there, in shares of its extent."""
+
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif"
 """Fonts that are there: none is fetched."""
 
@@ -132,15 +141,31 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
             y=y,
             name=name,
             mode="markers",
-            marker={"color": mark.colour, "symbol": mark.shape, "size": 6, "opacity": mark.opacity},
+            marker={
+                "color": mark.colour,
+                "symbol": mark.shape,
+                "size": 6 if len(data.drawn) < MANY else 4,
+                "opacity": mark.opacity,
+            },
             customdata=_ids(designs),
             hovertemplate=hover({"x": first, "y": second}),
         )
     figure.add_scatter(**ring(13), x=[], y=[])
-    figure.update_xaxes(title_text=label(first), rangemode="normal")
-    figure.update_yaxes(title_text=label(second))
+    figure.update_xaxes(title_text=label(first), range=_range(data, first))
+    figure.update_yaxes(title_text=label(second), range=_range(data, second))
     figure.update_layout(shapes=list(goal_lines(first, second)), dragmode="select")
     return figure
+
+
+def _range(data: ReportData, facts: ObjectiveFacts) -> list[float]:
+    """What an axis shows at first: the front, the goal, and of what was tried what is not far behind."""
+    values = [data.front[i].objectives[facts.index] for i in data.drawn]
+    values += [] if facts.goal is None else [facts.goal]
+    low, high = min(values), max(values)
+    wide = (high - low) or abs(high) or 1.0
+    worst = data.tried.objectives[:, facts.index].max(initial=high)
+    top = min(worst, high + BEHIND * wide)
+    return [rounded(facts.axis.scaled(low - MARGIN * wide)), rounded(facts.axis.scaled(top + MARGIN * wide))]
 
 
 def goal_lines(first: ObjectiveFacts, second: ObjectiveFacts) -> Iterator[dict[str, Any]]:

@@ -1,5 +1,6 @@
 """The report's page: frozen data to one HTML file."""
 
+import base64
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -133,7 +134,7 @@ def _front_figures(data: ReportData) -> list[dict[str, Any]]:
         found.append(drawn("front", front_3d(data), webgl=True, axes=[0, 1, 2]))
     for pair, figure in projections(data):
         names = " and ".join(data.objectives[i].axis.words for i in pair)
-        found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names))
+        found.append(drawn(f"projection-{pair[0]}-{pair[1]}", figure, axes=list(pair), words=names, dotted=True))
     return found
 
 
@@ -156,6 +157,7 @@ def _selection(data: ReportData) -> dict[str, Any]:
         + [_field(facts.axis, goal=facts.goal) for facts in data.objectives],
         "objectives": len(data.objectives),
         "designs": designs,
+        "tried": _tried(data),
         "responses": {} if responses is None else _curves(responses),
         "selected": _first(data),
         "name": data.name,
@@ -215,6 +217,16 @@ def _designs(data: ReportData) -> dict[str, Any]:
         "attainment": None
         if data.front[0].attainment is None
         else [None if d.attainment is None else rounded(d.attainment) for d in known.values()],
+    }
+
+
+def _tried(data: ReportData) -> dict[str, Any]:
+    """What the front is drawn against: single precision, a text a column, since the page draws it by itself."""
+    largest = np.finfo("<f4").max
+    columns = np.clip(data.tried.objectives, -largest, largest).astype("<f4").T
+    return {
+        "values": [base64.b64encode(column.tobytes()).decode() for column in columns],
+        "feasible": base64.b64encode(data.tried.feasible.astype("u1").tobytes()).decode(),
     }
 
 

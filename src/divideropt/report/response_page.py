@@ -23,7 +23,7 @@ DRAWN = (
 """What of a simulated response is drawn, flows first: the answer before the reasons."""
 
 _PLOT_HEIGHT = 260
-_TITLES = {"m^3/s": "flow", "Pa": "pressure", "m": "position", "m/s": "velocity"}
+_TITLES = {"m^3/s": "flow Q", "Pa": "pressure P", "m": "position x", "m/s": "velocity ẋ"}
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def response_figure(response: ResponseCurves) -> go.Figure:
         figure.update_yaxes(title_text=f"{words} [{plain(shown.unit)}]" if shown.unit else words, row=row, col=1)
         top = figure.layout[f"yaxis{row if row > 1 else ''}"].domain[1]
         figure.update_layout({name: {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom"}})
-    figure.update_xaxes(title_text=f"time [{time.unit}]", row=rows, col=1)
+    figure.update_xaxes(title_text=f"time t [{time.unit}]", row=rows, col=1)
     figure.update_layout(showlegend=True, hovermode="x unified")
     return figure
 

@@ -56,6 +56,7 @@ def index_bars(
             )
     figure.update_layout(barmode="group", bargap=0.25, showlegend=True)
     figure.update_yaxes(rangemode="tozero")
+    figure.update_yaxes(title_text="Sobol indices S1, ST", col=1)
     return figure
 
 
@@ -89,6 +90,7 @@ def convergence(data: StudyData) -> go.Figure:
     figure.update_xaxes(type="log", tickvals=counts, ticktext=[_short(count) for count in counts])
     figure.update_xaxes(title_text="blocks")
     figure.update_yaxes(rangemode="tozero")
+    figure.update_yaxes(title_text="Sobol index ST", col=1)
     figure.update_layout(showlegend=True)
     return figure
 

@@ -38,7 +38,7 @@ def step_figure(responses: Responses) -> go.Figure:
     _add(figure, StepResponse("selected", (), ((), ()), 0.0), SELECTED_STROKE)
     figure.update_yaxes(title_text="load flow 1 QL1 [L/min]", row=1, col=1)
     figure.update_yaxes(title_text="load flow 2 QL2 [L/min]", row=2, col=1)
-    figure.update_xaxes(title_text="time since the first event [ms]", row=2, col=1)
+    figure.update_xaxes(title_text="time since the first event t [ms]", row=2, col=1)
     figure.update_layout(
         showlegend=True,
         legend={"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"},

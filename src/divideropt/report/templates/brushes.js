@@ -104,7 +104,7 @@ function brushAxis(i, brush) {
   tellBrushes();
   if (!parallel.brushes.size) return clearSelection();
   const rows = rowsBrushed();
-  drawSelected(rows, true); // at once; the other views when the pointer pauses
+  drawSelected(rows, true, undefined, true); // at once; all of them and the other views when the pointer pauses
   clearTimeout(parallel.pausing);
   parallel.pausing = setTimeout(() => choose(rows.map((row) => ids[row]), "brushes"), PAUSE);
   return undefined;

@@ -2,6 +2,7 @@
 
 const shown = new Map(); // element's id → figure that is drawn there
 const NARROW = 600; // [px]
+const QUIET = 2000; // without a touch, before WebGL is drawn where nobody looks [ms]
 const DIMMED = 0.12; // opacity of what is not selected
 
 let themed = null; // kept until the theme changes: to ask for it makes the browser style the whole page
@@ -10,7 +11,7 @@ function theme() {
   if (themed) return themed;
   const style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue("--" + name).trim();
-  themed = { ink: colour("ink"), quiet: colour("quiet"), grid: colour("grid"), line: colour("line"), paper: colour("paper"), series: report.colours.map((_, i) => colour("series-" + i)) };
+  themed = { ink: colour("ink"), quiet: colour("quiet"), missed: colour("missed"), grid: colour("grid"), line: colour("line"), paper: colour("paper"), series: report.colours.map((_, i) => colour("series-" + i)) };
   return themed;
 }
 
@@ -29,7 +30,7 @@ function coloured(figure) {
   layout.hoverlabel = { bgcolor: t.paper, bordercolor: t.line, font: { color: t.ink } };
   layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: t.quiet, activecolor: t.ink };
   for (const key of Object.keys(layout)) {
-    if (/^[xy]axis/.test(key)) layout[key] = { showgrid: true, zeroline: false, showline: true, ticks: "outside", ticklen: 4, ...axis, ...layout[key] };
+    if (/^[xy]axis/.test(key)) layout[key] = { exponentformat: "power", minexponent: 5, showgrid: !isDotted(figure), zeroline: false, showline: true, ticks: "outside", ticklen: 4, ...axis, ...layout[key] };
   }
   if (layout.scene) {
     if (byId(figure.id).clientWidth < NARROW) {
@@ -46,7 +47,7 @@ function coloured(figure) {
     if (isRing(trace)) copy.marker = { ...copy.marker, color: t.ink, line: { ...copy.marker.line, color: t.ink } };
     return copy;
   });
-  return { data, layout };
+  return { data: isDotted(figure) ? withoutMarks(figure, data) : data, layout };
 }
 
 const isRing = (trace) => trace.name === "selected" && trace.mode === "markers";
@@ -76,7 +77,9 @@ function leaveOut(element) {
 function configOf(figure) {
   if (!isProjection(figure)) return report.config;
   const removed = report.config.modeBarButtonsToRemove.filter((name) => !/^(select|lasso)2d$/.test(name));
-  return { ...report.config, modeBarButtonsToRemove: removed };
+  if (!isDotted(figure)) return { ...report.config, modeBarButtonsToRemove: removed };
+  const button = { name: "save", title: "Download plot as a PNG", icon: Plotly.Icons.camera, click: (element) => savePicture(element, figure) };
+  return { ...report.config, modeBarButtonsToRemove: [...removed, "toImage"], modeBarButtonsToAdd: [button] };
 }
 
 const isProjection = (figure) => figure.axes && figure.axes.length === 2;
@@ -92,15 +95,33 @@ async function draw(figure) {
   for (const drawing of element.querySelectorAll(".main-svg, .gl-container")) drawing.setAttribute("aria-hidden", "true"); // the label says what it is; the numbers are in the tables
   shown.set(figure.id, figure);
   if (!figure.axes) return;
+  if (isDotted(figure)) beginDots(figure);
   const later = (action) => setTimeout(action, 0); // plotly has not done yet when it tells
   element.on("plotly_click", (event) => later(() => pick(event.points[0].customdata, figure.id, event.event)));
   element.on("plotly_selected", (event) => { // plotly tells of one also when it draws again
-    if (event && !figure.drawing) later(() => choose(event.points.map((point) => point.customdata), figure.id));
+    if (!event || figure.drawing) return;
+    later(() => choose(isDotted(figure) ? idsOutlined(figure) : event.points.map((point) => point.customdata), figure.id));
   });
-  element.on("plotly_deselect", () => later(clearSelection));
+  element.on("plotly_deselect", () => later(() => (isDotted(figure) && !selection.active ? showMore(figure) : clearSelection())));
 }
 
-const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action) : setTimeout(action, 1000));
+const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action, { timeout: 1000 }) : setTimeout(action, 100));
+const idle = () => new Promise((done) => whenIdle(() => done()));
+
+/** Act when nothing has been touched for a while. */
+function whenQuiet(action) {
+  const kinds = ["pointermove", "pointerdown", "keydown", "wheel", "touchmove"];
+  let waiting;
+  const again = () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => {
+      for (const kind of kinds) removeEventListener(kind, again, true);
+      whenIdle(action);
+    }, QUIET);
+  };
+  for (const kind of kinds) addEventListener(kind, again, { capture: true, passive: true });
+  again();
+}
 
 /** WebGL takes seconds where a processor computes it: it is drawn when it is looked at or all else is done, and again only where it is looked at. */
 function drawWhenSeen(figure, able) {
@@ -129,7 +150,8 @@ function redraw(figure) {
   if (figure.stale || !shown.has(figure.id)) return undefined;
   const element = byId(figure.id);
   const { data, layout } = coloured(figure);
-  if (isProjection(figure)) {
+  if (isDotted(figure)) dot(figure, true);
+  else if (isProjection(figure)) {
     layout.selections = selection.by === figure.id ? element.layout.selections : []; // outlines of boxes
     layout.selectionrevision = selection.by === figure.id ? figure.id : String(Math.random());
   }
@@ -166,5 +188,9 @@ function fill(over, traces, isChosen) {
 
 function followInFigures() {
   const fronts = report.figures.filter((figure) => figure.axes);
-  follow(() => Promise.all(fronts.map((figure) => { markFigure(figure); return redraw(figure); })));
+  follow(() => Promise.all(fronts.map((figure) => {
+    if (isDotted(figure)) return followInDots(figure);
+    markFigure(figure);
+    return redraw(figure);
+  })));
 }

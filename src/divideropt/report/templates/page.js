@@ -12,10 +12,13 @@ function raised(value) {
 function number(value) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
-  const text = size === 0 ? "0" : size < 1e-4 || size >= 1e6 ? raised(value) : value.toPrecision(4);
+  const whole = Math.max(0, Math.floor(Math.log10(size)) - 3); // digits that four do not reach: 12345 is no 1.235e+4
+  const text = size === 0 ? "0" : size < 1e-4 || size >= 1e6 ? raised(value) : whole ? value.toFixed(0) : value.toPrecision(4);
   return text.replace("-", "−");
 }
 
+const onPaper = () => window.matchMedia("print").matches;
+const crisp = () => Math.max(onPaper() ? 3 : 1, window.devicePixelRatio || 1); // pixels of a canvas for one of the page
 const counted = (count, word) => count + " " + word + (count === 1 ? "" : "s");
 
 function make(name, text, attributes) {

@@ -2,7 +2,8 @@
 // over both. A value that is missing is a gap in its line.
 
 const AXIS_ROOM = 104; // least width of an axis with its heading [px]
-const FRAME = { top: 74, bottom: 24, side: 62, height: 440 }; // [px]
+const FRAME = { top: 84, bottom: 24, side: 62, height: 450 }; // [px]
+const MOST_HASTY = 1000; // lines that are drawn in each frame of a drag
 const NEAR = 8; // how far from a line a click may be [px]
 
 const parallel = {
@@ -60,7 +61,7 @@ function drawLine(context, row) {
 }
 
 function cleared(canvas) {
-  const ratio = Math.max(1, window.devicePixelRatio || 1);
+  const ratio = crisp();
   const width = parallel.box.clientWidth;
   canvas.width = width * ratio;
   canvas.height = FRAME.height * ratio;
@@ -81,14 +82,22 @@ function drawRows(context, rows, width) {
   }
 }
 
+/** Elsewhere, then copied as one picture: of many lines drawn on a canvas in the page Chromium prints none. */
 function drawAll() {
-  drawRows(cleared(parallel.box.querySelector(".all")), [...Array(drawnDesigns).keys()], 1);
+  const canvas = parallel.box.querySelector(".all");
+  const apart = document.createElement("canvas");
+  drawRows(cleared(apart), [...Array(drawnDesigns).keys()], 1);
+  const context = cleared(canvas);
+  context.resetTransform();
+  context.drawImage(apart, 0, 0);
 }
 
-function drawSelected(rows, active, lead) {
+/** Draw the selected lines; hastily, while a brush is dragged, an even part of them where they are many. */
+function drawSelected(rows, active, lead, hasty) {
   parallel.box.dataset.selected = active ? rows.length : "";
   const context = cleared(parallel.box.querySelector(".some"));
-  drawRows(context, rows, 1.4);
+  const step = hasty ? Math.ceil(rows.length / MOST_HASTY) : 1;
+  drawRows(context, rows.filter((_, i) => i % step === 0), rows.length > MOST_HASTY ? 1 : 1.4); // hairlines are drawn twice as fast
   if (lead === undefined) return;
   context.globalAlpha = 1;
   context.lineWidth = 2.4;

@@ -13,12 +13,36 @@ function showQuantity(name) { // one quantity over every parameter of a study
   return redraw(figure);
 }
 
+/** What was folded away when it was drawn had no width. */
+function resizeIn(details) {
+  for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
+}
+
+/** Make tables smaller that are wider than the paper. */
+function fitToPaper() {
+  for (const frame of document.querySelectorAll(".scroll")) {
+    for (const content of frame.children) content.style.zoom = "";
+    const share = Math.min(1, frame.clientWidth / frame.scrollWidth);
+    if (onPaper()) for (const content of frame.children) content.style.zoom = share;
+  }
+}
+
+/** Open what is folded away while the page is printed: paper has nothing to click. */
+function unfoldForPaper() {
+  for (const details of document.querySelectorAll(onPaper() ? "details:not([open])" : "details[data-folded]")) {
+    details.toggleAttribute("data-folded", onPaper());
+    details.open = onPaper();
+    resizeIn(details);
+  }
+}
+
 async function beginSelecting() {
   followInTables();
   followInFigures();
   followClosely();
   followInSketch();
   followInSheet();
+  followToggle();
   beginParallel();
   followInBar();
   followInAddress();
@@ -38,25 +62,33 @@ async function begin() {
   offerCampaign();
   const pictures = report.figures.filter((figure) => figure.webgl);
   if (report.selected) await beginSelecting(); // first: so that the figures are drawn once, with the selection in them
-  for (const figure of report.figures) if (!figure.webgl) await draw(figure);
+  const flat = report.figures.filter((figure) => !figure.webgl);
+  const first = flat.filter((figure) => !report.selected || isDotted(figure) || figure.id === "response");
+  for (const figure of first) await draw(figure);
+  document.documentElement.dataset.ready = Math.round(performance.now()); // for brushes, since the navigation [ms]
+  for (const figure of flat.filter((other) => !first.includes(other))) {
+    await idle();
+    await draw(figure);
+  }
   if (report.quantities) byId("quantity").addEventListener("change", (event) => showQuantity(event.target.value));
+  if (pictures.length && report.selected) await idle();
   const able = pictures.length > 0 && webgl();
   for (const figure of pictures) drawWhenSeen(figure, able);
   for (const media of ["(prefers-color-scheme: dark)", "print"]) {
     window.matchMedia(media).addEventListener("change", () => {
       themed = null;
+      if (media === "print") {
+        unfoldForPaper();
+        fitToPaper();
+      }
       shown.forEach(redraw);
       if (media === "print") pictures.filter(() => able).forEach(see);
       if (report.selected) layOut();
     });
   }
-  for (const details of document.querySelectorAll("details")) {
-    details.addEventListener("toggle", () => { // what was folded away when it was drawn had no width
-      for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
-    });
-  }
+  for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => resizeIn(details));
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
-  if (able) for (const figure of pictures) whenIdle(() => see(figure)); // for who scrolls quickly, and for pictures of the page
+  if (able) for (const figure of pictures) whenQuiet(() => see(figure)); // for who scrolls quickly, and for pictures of the page
 }
 
 begin();

@@ -57,6 +57,12 @@ function tellRows() {
   }
   const first = document.querySelector("#compared tbody tr");
   if (first && !document.querySelector("#compared tbody tr[tabindex='0']")) first.tabIndex = 0;
+  if (frontTableSeen) showCurrentRow(); // else when it comes into view: its thousand rows have not been laid out yet
+}
+
+let frontTableSeen = false;
+
+function showCurrentRow() {
   const row = document.querySelector('#front-table tr[aria-current="true"]');
   if (!row) return;
   const frame = row.closest(".tall");
@@ -71,5 +77,9 @@ function followInTables() {
     if (table) listenTo(table, (design, event) => pick(design, id, event));
   }
   listenTo(byId("compared"), showClosely);
+  new IntersectionObserver((entries) => {
+    frontTableSeen = entries[entries.length - 1].isIntersecting;
+    if (frontTableSeen) showCurrentRow();
+  }).observe(byId("front-table").closest(".tall"));
   follow(tellRows);
 }
