@@ -259,6 +259,16 @@ def test_what_is_the_same_or_in_proportion_is_stored_once(data: ReportData) -> N
     assert by_name["groove depth"]["times"] == pytest.approx(math.sqrt(3.0) / 2.0)
 
 
+def test_a_design_without_a_variable_has_no_drawing(data: ReportData) -> None:
+    variables = variables_of(data)
+    variables[1, 0] = np.nan
+    columns = sketch_payload(data.sketches, variables)["columns"]
+    lists = [column for column in columns if isinstance(column, list)]
+    assert all(column[1] is None for column in lists)
+    assert all(value is not None for column in lists for row, value in enumerate(column) if row != 1)
+    assert sketch_payload(data.sketches, variables[1:2]) is None
+
+
 def test_sheets_cost_no_more_than_a_few_simulations(store: Store, data: ReportData) -> None:
     problem = build_problem(stored_campaign(store))
     many = [data.front[0]] * (MOST_SIMULATED // 4 + 10)
