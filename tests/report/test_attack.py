@@ -135,7 +135,6 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         campaign=hostile,
         front=designs,
         responses=responses,
-        sketches=None,  # whose own test has hostile names
         sheets=None,
         runs=tuple(
             replace(

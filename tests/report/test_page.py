@@ -195,7 +195,6 @@ def test_hostile_text_stays_text(opened, data):
                 sketches=replace(data.sketches, rows={**data.sketches.rows, **rows}),
                 campaign=HOSTILE,
                 front=designs,
-                sketches=None,  # these have a test of their own
                 sheets=None,
                 runs=runs,
                 objectives=objectives,
