@@ -4,8 +4,8 @@ Lengths, areas, volumes and the mass are those of the model, (3.13)–(3.22) as 
 where a drawing has diameters, and areas of the fixed orifices where a drawing has holes: a fixed orifice is given as
 one round hole of its area. How the total land length L_L lies on the spool is not in the model, which needs only the
 distance h from a groove to its land's edges and the chamber length La; the arrangement that is drawn is the one in
-which the base set comes out even, our own reading: an outer land of 2h with the groove in its middle at either end, the
-rest of L_L between the ports, La to either side of it, and equal stems for what is left of L_T. Where a set of
+which the base set comes out even, our own reading: an outer land of 2h with the groove in its middle at either end,
+the rest of L_L between the ports, La to either side of it, and equal stems for what is left of L_T. Where a set of
 parameters leaves no room for that, the outer lands share L_L, and the chambers what L_T leaves.
 """
 
