@@ -27,8 +27,8 @@ _ZERO = Form()
 _CAPTION = (
     "To scale, from the design’s own numbers, the spool centred: lands, stems, ports, stroke and grooves are the "
     "model’s. The casing’s outer form is not in the model and only schematic, as is how far the rim stands out. Of "
-    "the lands the model has the total length; that the outer ones are 2h with the groove in the middle is our reading. "
-    "Necks are r thick, as (3.22) assumes; fixed orifices are drawn as one round hole each."
+    "the lands the model has the total length; that the outer ones are 2h with the groove in the middle is our "
+    "reading. Necks are r thick, as (3.22) assumes; fixed orifices are drawn as one round hole each."
 )
 
 
