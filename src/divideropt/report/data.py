@@ -101,7 +101,7 @@ class ReportData:
         notes: Sentences on the state of the store.
         provenance: What computed it, and how to repeat it.
         studies: The campaign's sensitivity studies in short.
-        sketches: Every design that the page can show, to scale; None for a model that offers no sketch.
+        sketches: What draws the designs to scale; None for a model that offers no sketch.
         sheets: Dimension sheets of designs whose response there is; None where there are none.
     """
 
@@ -227,13 +227,11 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
 
 
 def _with_dimensions(data: ReportData, problem: Problem) -> ReportData:
-    """Add the sketch of every design that the page can show, and sheets of those whose response it has."""
-    candidates = data.choosing.candidates if data.choosing else ()
-    shown = (*(data.front[i] for i in data.drawn), *data.best, *(candidate.design for candidate in candidates))
-    known = {design.design_id: design for design in shown}
+    """Add what draws the designs, and sheets of those whose response there is."""
+    known = {design.design_id: design for design in (*data.front, *data.best)}
     simulated = data.responses.designs if data.responses else ()
     sheets = read_sheets(problem, [known[response.name] for response in simulated if response.name in known])
-    return replace(data, sketches=read_sketches(problem, shown), sheets=sheets)
+    return replace(data, sketches=read_sketches(problem), sheets=sheets)
 
 
 def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int]:
