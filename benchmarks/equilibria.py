@@ -26,9 +26,10 @@ from divideropt.models.divider.equilibrium import (
     rests_on_stop,
     stability_margin,
 )
-from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
+from divideropt.models.divider.kernels import jacobian, rates
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.scenario import Inputs
+from divideropt.models.divider.states import N_STATES, STATES
 from divideropt.ode import integrate
 
 COUNT = 10_000

@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from divideropt.models.divider import run_kernels
-from divideropt.models.divider.kernels import N_STATES
+from divideropt.models.divider.states import N_STATES
 from divideropt.ode import rodas5p, rosenbrock
 
 

@@ -9,9 +9,10 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.elimination_kernels import factorise_shifted, solve_shifted
-from divideropt.models.divider.kernels import N_STATES, motion
+from divideropt.models.divider.kernels import motion
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.run_kernels import run
+from divideropt.models.divider.states import N_STATES
 from divideropt.ode import SolverSettings
 from divideropt.ode.base import Trajectory
 from divideropt.ode.compiled import compiled

@@ -18,10 +18,11 @@ from scipy.integrate import odeint, solve_ivp
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETERS, Divider, groove_kernels, kernels
-from divideropt.models.divider.kernels import N_STATES, jacobian, motion, rates
+from divideropt.models.divider.kernels import jacobian, motion, rates
 from divideropt.models.divider.metrics import measure
 from divideropt.models.divider.record import COEFFICIENTS, Design, blank
 from divideropt.models.divider.response import Response
+from divideropt.models.divider.states import N_STATES
 from divideropt.models.divider.tolerances import DEFAULT_SCALES
 from divideropt.ode import SolverStatus, Trajectory
 from divideropt.ode.base import NODES

@@ -1,9 +1,13 @@
 """A document in a browser: what the tests of pages look at, and that it keeps quiet."""
 
-from collections.abc import Collection
+import os
+import shutil
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from playwright.sync_api import Page
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
 
 PATIENCE = 90_000
 """How long a page may take [ms]: without a graphics card, on a busy machine, WebGL alone takes ten seconds."""
@@ -71,6 +75,21 @@ def borne_out(dots: list[dict[str, float]], chosen: Collection[object]) -> None:
     for dot in dots:
         if all(max(abs(dot["x"] - other["x"]), abs(dot["y"] - other["y"])) > APART for other in above):
             assert dot["some"] == 0
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Start Debian's Chromium; where there is none skip the test, or fail it if the environment asks for one."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
+        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
+    if path is None:
+        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
+    with sync_playwright() as playwright:
+        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = playwright.chromium.launch(executable_path=path, args=args)
+        yield browser
+        browser.close()
 
 
 def quiet(found: Opened) -> None:

@@ -166,6 +166,36 @@ def test_simulate_refuses_what_the_command_refuses(arguments, words):
         divideropt.simulate(**arguments)
 
 
+def test_a_notebook_shows_what_there_is(ran):
+    results, _ = ran
+    response = results.simulate(results.front()["design_id"].iloc[0])
+    first, error, *_, last = repr(response).splitlines()
+    assert first == "outcome: ok"
+    assert error == f"steady_state_error: {response.quantities.loc['steady_state_error', 'value']:.6g} %"
+    assert ".plot()" in last
+    assert response._repr_html_().count("<tr") == len(response.quantities) + 2  # and a head of two rows
+    assert "<b>" not in divideropt.open(results.folder)._repr_html_()
+    assert "runs: nsga2-1, complex-1\n" in results._repr_html_()
+    compared = divideropt.compare(results.folder)
+    assert repr(compared) == str(compared)
+    assert compared._repr_html_().startswith("<pre>After ")
+
+
+def test_export_is_the_command(ran, tmp_path):
+    results, _ = ran
+    folder = results.export("csv", tmp_path / "tables")
+    assert folder == tmp_path / "tables"
+    again = divideropt.evaluate(folder / "fronts" / "combined.csv", results.campaign)
+    front = results.front()
+    for name in ("design_id", *results.variables, *results.objectives):
+        assert again[name].tolist() == front[name].tolist()
+    pd.testing.assert_frame_equal(divideropt.evaluate(front, results.campaign), again)
+    parquet = divideropt.export(results.folder, "parquet", tmp_path / "parquet")
+    assert len(pd.read_parquet(parquet / "evaluations.parquet")) == 88
+    with pytest.raises(UsageError, match="is there already"):
+        divideropt.export(results.folder, out=tmp_path / "tables")
+
+
 def test_a_failed_design_is_a_value():
     response = divideropt.simulate({"spool_radius": "1e300 m"})
     assert response.outcome == "no_equilibrium"
@@ -212,6 +242,15 @@ def test_a_study_gives_its_indices(ran):
     assert set(study.table["variable"]) >= set(results.variables)
     assert study.report.parent == study.folder == results.folder / "sensitivity" / "two"
     assert "morris" in study.text.lower() or "trajector" in study.text
+    assert "trajectories" in repr(study)
+    assert repr(study).endswith(f"report: {study.report}\n.table has the numbers, .plot() draws them")
+    assert study._repr_html_().startswith("<pre>")
+    figure = study.plot()
+    assert len(figure.data) == len(results.objectives)  # a panel an objective
+    assert set(figure.data[0].text) >= {"r", "ΔPt"}
+    assert len(study.plot("settling_time").data) == 1
+    with pytest.raises(UsageError, match="no numbers of 'setling_time'; did you mean settling_time"):
+        study.plot("setling_time")
     sweep = divideropt.sensitivity(
         CAMPAIGN,
         parameters=["spool_radius=8 mm..9 mm"],
@@ -222,6 +261,13 @@ def test_a_study_gives_its_indices(ran):
     )
     assert sweep.table["spool_radius"].between(8e-3, 9e-3).all()
     assert sweep.table.attrs["units"]["spool_radius"] == "m"
+    assert repr(sweep).startswith("3 designs, one parameter at a time\nreport: ")
+    drawn = sweep.plot("source_pressure")
+    lines = [trace for trace in drawn.data if trace.mode and "lines" in trace.mode]
+    assert [len(trace.x) for trace in lines] == [3]
+    assert drawn.layout.xaxis.title.text == "r [mm]"
+    assert drawn.layout.yaxis.title.text == "source pressure Ps [MPa]"
+    assert "steady state error" in str(sweep.plot().layout.yaxis.title.text)
 
 
 def test_error_budget_is_a_table_with_an_outcome():

@@ -63,6 +63,39 @@ def test_no_color_is_honoured_on_a_terminal(tmp_path, monkeypatch, given):
     assert "1 min 30 s" in stream.getvalue()
 
 
+@pytest.mark.parametrize(
+    ("stream", "variables"),
+    [(io.StringIO(), {"FORCE_COLOR": "1", "TERM": "xterm-256color"}), (Terminal(), {"TERM": "dumb"})],
+    ids=["a pipe whose colours are forced", "a dumb terminal"],
+)
+def test_lines_are_written_where_nothing_can_be_painted_over(tmp_path, monkeypatch, stream, variables):
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    (tmp_path / "nsga2-1.json").write_text(json.dumps(asdict(standing(done=1000, ended="done"))), encoding="utf-8")
+    with Display(tmp_path, {"nsga2-1": 1000}, stream):
+        pass
+    with Counter("{} of {} again", 2, stream) as counter:
+        counter.advance()
+        counter.advance()
+    assert "\x1b" not in stream.getvalue()
+    assert stream.getvalue().splitlines() == [
+        "nsga2-1: 1000 of 1000 evaluations (done), 10/s, best max λ –, hypervolume –",
+        "2 of 2 again",
+    ]
+
+
+def test_a_run_that_was_only_replayed_has_no_rate(tmp_path):
+    (tmp_path / "nsga2-1.json").write_text(
+        json.dumps(asdict(Standing("nsga2-1", 1000, 1000, 1000, 0.0, None, None, "done"))), encoding="utf-8"
+    )
+    stream = io.StringIO()
+    with Display(tmp_path, {"nsga2-1": 1000}, stream):
+        pass
+    assert stream.getvalue() == (
+        "nsga2-1: 1000 of 1000 evaluations, 1000 from the log (done), best max λ –, hypervolume –\n"
+    )
+
+
 def test_a_count_says_how_long_it_takes_yet(monkeypatch):
     clock = iter([0.0, 100.0, 100.0, 200.0])
     monkeypatch.setattr("divideropt.campaign.progress.time.monotonic", lambda: next(clock))

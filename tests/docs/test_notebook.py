@@ -49,6 +49,13 @@ def test_tables_are_of_the_designs_that_were_given(notebook):
     assert names["thicker"].attrs["units"]["dynamic_error"] == "m^3"
     assert "hypervolume" in printed
     assert set(names["mu_star"]["variable"]) >= set(names["results"].variables)
+    assert len(names["drawn"].data) == len(names["results"].objectives)
+
+
+def test_what_was_exported_is_evaluated_again_to_the_same(notebook):
+    names, _ = notebook
+    for objective in names["results"].objectives:
+        assert names["again"][objective].tolist() == names["front"][objective].tolist()
 
 
 def test_what_goes_wrong_is_said(notebook):

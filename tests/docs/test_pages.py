@@ -1,18 +1,51 @@
-"""The documentation builds without a warning, and what its pages tell one to do gives what they say."""
+"""What the pages of the documentation tell one to do gives what they say; their links and formulas are right."""
 
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import textwrap
 
 import pytest
+from ruamel.yaml import YAML
 
+from divideropt.campaign.load import parse_campaign
 from following import ROOT, agrees, blocks, follow, here
 
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
-FOLLOWED = ("tutorial.md", "how-to/own-model.md", "how-to/resume.md", "how-to/read-the-store.md")
+FOLLOWED = (
+    "tutorial.md",
+    "how-to/own-model.md",
+    "how-to/resume.md",
+    "how-to/read-the-store.md",
+    "how-to/dimensions.md",
+    "how-to/robust.md",
+    "how-to/compare.md",
+    "how-to/sensitivity.md",
+)
+NOT_RUN = {
+    "python -m pip install 'divideropt[dask]'": "installs; the test extra has dask",
+    "dask scheduler --host node1 --port 8786": "on a cluster's machine; tests/campaign/test_cluster.py has its own",
+    "dask worker tcp://node1:8786 --nworkers 16 --nthreads 1": "another",
+    "divideropt run campaign.yaml --store /shared/results/divider": "where these are",
+    "python docs/make_claims.py": "a page says how it was written, in three minutes; test_claims.py holds it",
+    "python docs/make_thesis_figures.py": "the same; test_thesis_figures.py holds it",
+    "python -m pip install . && divideropt run campaigns/quickstart.yaml": "the tutorial begins so",
+    "python -m pip install -e '.[test]' && pytest": "this is pytest",
+    "python3 -m venv .venv && . .venv/bin/activate": "installs",
+    "python -m pip install -e '.[dev]'": "installs",
+    "poe lint": "lints",
+    "poe test tests/models/divider/test_metrics.py": "is a part of the tests",
+    "poe check": "runs this",
+}
+"""Commands that pages show in indented blocks, which nobody follows, each with the reason."""
+
+
+def yaml(source):
+    return YAML(typ="safe").load(source)
 
 
 def names(pages):
@@ -29,17 +62,6 @@ def do(page, folder, environment, without=()):
     assert shown
     for block, printed, wrong in shown:
         assert wrong is None, f"{page}, after\n{block.text}\nno line {wrong!r} where it should be, but\n{printed}"
-
-
-def sphinx(source, built):
-    """Build pages as `poe docs` does."""
-    return subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", source, built],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{DOCS}"},
-    )
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +86,32 @@ def test_the_tutorial_leads_where_it_says(followed):
 
 def test_the_store_reads_as_its_page_says(followed, environment):
     do("how-to/read-the-store.md", followed, environment)
+
+
+def test_uncertain_designs_come_out_as_their_page_says(followed, environment):
+    do("how-to/robust.md", followed, environment)
+
+
+def test_the_readmes_lines_of_python_run(followed, environment):
+    block = re.search(
+        r"^## From Python\n.*?\n\n((?:    .*\n)+)", (ROOT / "README.md").read_text("utf-8"), re.M | re.S
+    )
+    script = "\n".join(line[4:] for line in block[1].splitlines()) + "\nprint(len(front))"
+    done = subprocess.run(
+        ["python", "-c", script], cwd=followed, env=environment, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (0, "195\n"), done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["how-to/compare.md", "how-to/sensitivity.md"])
+def test_large_campaigns_come_out_as_their_page_says(tmp_path, environment, page):
+    shutil.copytree(ROOT / "campaigns", tmp_path / "campaigns")
+    do(page, tmp_path, environment)
+
+
+def test_dimensions_are_listed_as_their_page_says(followed, environment):
+    do("how-to/dimensions.md", followed, environment)
 
 
 @pytest.mark.slow
@@ -115,7 +163,7 @@ def test_an_output_that_differs_does_not(expected, wrong):
     assert agrees(OUTPUT, expected) == wrong
 
 
-def test_a_formula_that_is_not_understood_is_a_warning_with_its_place(tmp_path):
+def test_a_formula_that_is_not_understood_is_a_warning_with_its_place(tmp_path, sphinx):
     settings = {
         "extensions": ["myst_parser", "mathml"],
         "html_math_renderer": "mathml",
@@ -137,13 +185,23 @@ def test_no_page_that_is_followed_is_forgotten():
     assert fenced == {*FOLLOWED, "how-to/notebook.md"}  # which test_notebook.py executes
 
 
-def test_the_documentation_builds_without_a_warning(tmp_path):
-    done = sphinx(DOCS, tmp_path / "built")
-    assert (done.returncode, done.stderr) == (0, "")
-    html = {path: path.read_text(encoding="utf-8") for path in (tmp_path / "built").rglob("*.html")}
-    assert html[tmp_path / "built" / "model" / "equations.html"].count("<math") > 100
-    fetched = re.compile(r"""<(?:script|link|img)[^>]*(?:src|href)="(?:https?:)?//""")
-    assert [path for path, text in html.items() if fetched.search(text)] == []
+def test_every_command_that_is_not_run_has_a_reason():
+    shown = set()
+    for page in (*PAGES, ROOT / "README.md", ROOT / "CONTRIBUTING.md"):
+        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+        found = re.findall(r"^    ((?:\w+=\S+ )*(?:divideropt|python3?|poe|dask|pip|sphinx-build) .*)", text, re.M)
+        shown |= {re.sub(r"\s+#.*", "", command) for command in found}
+    assert shown == set(NOT_RUN)
+
+
+@pytest.mark.parametrize("page", ["cluster", "sensitivity", "termination"])
+def test_what_a_page_adds_to_a_campaign_is_right(page):
+    campaign = yaml(ROOT / "campaigns" / "quickstart.yaml")
+    blocks = re.findall(r"(?:^    .*\n)+", (DOCS / f"how-to/{page}.md").read_text(encoding="utf-8"), re.MULTILINE)
+    added = [textwrap.dedent(block) for block in blocks if re.match(r"    \w+:", block)]
+    assert added
+    for text in added:
+        parse_campaign(json.dumps(campaign | yaml(text)), page)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=names(PAGES))

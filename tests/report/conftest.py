@@ -1,8 +1,6 @@
 """Small stores, made once: of the divider, and of an analytic model of any number of objectives."""
 
 import io
-import os
-import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from browsing import PATIENCE, Opened
 from divideropt.campaign.load import parse_campaign
@@ -115,21 +113,6 @@ parallel: {{backend: sequential}}
         return run_campaign(text, tmp_path / "spheres")
 
     return make
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    """One for all tests of pages; while it is there, `asyncio.run` is refused in this thread."""
-    path = shutil.which("chromium") or shutil.which("chromium-browser")
-    if path is None and os.environ.get("DIVIDEROPT_NEED_CHROMIUM"):
-        pytest.fail("no chromium on PATH, and DIVIDEROPT_NEED_CHROMIUM asks for it")
-    if path is None:
-        pytest.skip("no chromium on PATH: what a browser draws cannot be tested")
-    with sync_playwright() as playwright:
-        args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=path, args=args)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The pages' colours, light, dark and printed: told apart with any colour vision, and seen against what is behind."""
+"""The pages' colours, light, dark and on paper: told apart with any colour vision, and seen against the page."""
 
 import re
 from importlib.resources import files

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import plotly.graph_objects as go
 
-from divideropt.api.frames import modelled_frame
+from divideropt.api.frames import modelled_frame, preformatted
 from divideropt.api.given import Design, Given, campaign_given, setting
 from divideropt.campaign.budget import budget_table
 from divideropt.campaign.designs import evaluate_designs, parse_designs, read_designs, result_columns
@@ -18,13 +18,30 @@ from divideropt.errors import UsageError
 from divideropt.models.divider import PARAMETERS
 from divideropt.report.response_page import curves_of, response_figure, write_response
 
+_FEW = 3
+"""So many metrics stand for all: the first are those of the thesis's objectives."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Simulated:
     """One design's response."""
 
     response: SimulatedResponse
     """What `divideropt.campaign.simulate` returned."""
+
+    def __repr__(self) -> str:
+        """Say how it ended, its first metrics, and what else there is."""
+        shown = [
+            f"{name}: {value:.6g} {unit}".rstrip()
+            for name, value, unit in self.quantities[["value", "unit"]].head(_FEW).itertuples()
+        ]
+        words = [f"outcome: {self.outcome} {self.text}".rstrip(), *shown]
+        return "\n".join([*words, "…", ".quantities, .parameters and .table have all of it, .plot() draws it"])
+
+    def _repr_html_(self) -> str:
+        """Show every metric with its unit in a notebook."""
+        words = preformatted(f"outcome: {self.outcome} {self.text}".rstrip())
+        return f"{words}{self.quantities.to_html()}{preformatted('.plot() draws it, .table has every instant')}"
 
     @property
     def outcome(self) -> str:

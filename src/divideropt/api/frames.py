@@ -1,6 +1,7 @@
-"""Tables with units: what the columns of a `DataFrame` are, in its `attrs`."""
+"""Tables with units: what the columns of a `DataFrame` are, in its `attrs`; and words as a notebook shows them."""
 
 from collections.abc import Mapping
+from html import escape
 
 import pandas as pd
 import pyarrow as pa
@@ -25,3 +26,8 @@ def modelled_frame(frame: pd.DataFrame, *known: Mapping[str, Parameter] | Mappin
     for name, key in _KEYS.items():
         frame.attrs[name] = {str(c): getattr(entries[c], key) if c in entries else "" for c in frame.columns}
     return frame
+
+
+def preformatted(text: str) -> str:
+    """Make HTML of lines that are not to be broken, such as a table in text."""
+    return f"<pre>{escape(text)}</pre>"

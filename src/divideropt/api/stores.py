@@ -9,13 +9,13 @@ import plotly.graph_objects as go
 
 from divideropt.analysis import Tally
 from divideropt.api.designs import Simulated, simulate
-from divideropt.api.frames import stored_frame
+from divideropt.api.frames import preformatted, stored_frame
 from divideropt.api.given import listen
 from divideropt.campaign.beside import Side
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.export import export_store
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import plan_runs
 from divideropt.campaign.status import StoreStatus, read_status
 from divideropt.campaign.verify import verify_store
 from divideropt.errors import UsageError
@@ -42,6 +42,18 @@ class Results:
     def __repr__(self) -> str:
         """Say where it is."""
         return f"divideropt.open({str(self.folder)!r})"
+
+    def _repr_html_(self) -> str:
+        """Say in a notebook what was asked for, and what there is to do with it."""
+        runs = ", ".join(run.name for run in stored_runs(self.campaign, self._store))
+        return preformatted(
+            f"{self!r}: {self.campaign.name}\n"
+            f"runs: {runs}\n"
+            f"variables: {', '.join(self.variables)}\n"
+            f"objectives: {', '.join(self.objectives)}\n"
+            ".front(), .plot_front(), .evaluations(run), .simulate(design_id), .status(), .verify(), .report(), "
+            ".export()"
+        )
 
     @property
     def folder(self) -> Path:
@@ -169,7 +181,7 @@ class Results:
         return export_store(self._store, format, None if out is None else Path(out)).folder
 
     def _check_run(self, run: str, *others: str) -> None:
-        known = [*others, *(planned.name for planned in plan_runs(self.campaign))]
+        known = [*others, *(planned.name for planned in stored_runs(self.campaign, self._store))]
         if run not in known:
             raise UsageError(f"{self.folder}: there is no run {run!r}; there are {', '.join(known)}")
 

@@ -9,7 +9,7 @@ from typing import Any, TextIO
 import pandas as pd
 import plotly.graph_objects as go
 
-from divideropt.api.frames import stored_frame
+from divideropt.api.frames import preformatted, stored_frame
 from divideropt.api.given import Given, campaign_given
 from divideropt.campaign import compare as comparing
 from divideropt.campaign.load import stored_campaign
@@ -17,10 +17,11 @@ from divideropt.campaign.plan import build_problem, plan_runs
 from divideropt.campaign.study import Asked, check_home, run_study, study_of, study_store
 from divideropt.report import comparison_data, comparison_table, comparison_text, read_study, study_text, write_study
 from divideropt.report.comparison_figure import comparison_figure
+from divideropt.report.study_figure import study_figure
 from divideropt.store import Store, TableSchema
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Compared:
     """Strategies against each other."""
 
@@ -30,6 +31,12 @@ class Compared:
     def __str__(self) -> str:
         """Say it as the command does."""
         return comparison_text(self.found)
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        """Say it so in a notebook, where lines are not to be broken."""
+        return preformatted(str(self))
 
     @property
     def table(self) -> pd.DataFrame:
@@ -46,7 +53,7 @@ class Compared:
         return comparison_figure(self.found.comparison)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """A sensitivity study.
 
@@ -61,6 +68,31 @@ class Study:
     report: Path
     table: pd.DataFrame
     text: str
+
+    def __repr__(self) -> str:
+        """Say what the command says, where the page is and what else there is."""
+        words = self.text or f"{len(self.table)} designs, one parameter at a time"
+        return f"{words}\nreport: {self.report}\n.table has the numbers, .plot() draws them"
+
+    def _repr_html_(self) -> str:
+        """Say it so in a notebook, where lines are not to be broken."""
+        return preformatted(repr(self))
+
+    def plot(self, quantity: str | None = None) -> go.Figure:
+        """Draw what the parameters do.
+
+        Args:
+            quantity: To what; to the objectives where not given, of `oat` to the first of them.
+
+        Returns:
+            A Plotly figure: of `oat` the quantity over each parameter, a panel each; of `morris` σ against μ* and of
+            `sobol` first-order and total indices with 95 % intervals, a panel a quantity.
+
+        Raises:
+            UsageError: The study has no numbers of this quantity.
+            StoreError: Its store is damaged.
+        """
+        return study_figure(Store(self.folder), quantity)
 
 
 def compare(*stores: Path | str, at: int | None = None) -> Compared:

@@ -51,7 +51,7 @@ def _campaign_text(file: Path, template: str) -> str:
     text = files("divideropt.campaign").joinpath(f"{template}.yaml").read_text("utf-8")
     body = re.sub(r"\A(#.*\n)+", "", text)
     if names_folder(file.stem):
-        body = re.sub(r"\Aname: .*", f'name: "{file.stem}"', body)
+        body = re.sub(r"\Aname: .*", f'name: "{file.stem}"    # results go to results/{file.stem}', body)
     return (
         f"# Begun from divideropt's {template}.yaml: the adjustable-ratio flow divider, optimised.\n"
         f"# `divideropt check {file.name}` says every mistake at once, `divideropt run {file.name}` runs it, and\n"

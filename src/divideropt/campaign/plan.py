@@ -11,10 +11,9 @@ from divideropt.campaign.divider import DividerConfig
 from divideropt.campaign.termination import TerminationConfig
 from divideropt.campaign.uncertainty import counted_name, uncertain_model
 from divideropt.campaign.worst_case import worst_cases
-from divideropt.models import Model, Quantity
+from divideropt.models import Model, Quantity, divider
 from divideropt.models.base import FloatArray
 from divideropt.models.dimensions import Dimensioned
-from divideropt.models.divider import Divider
 from divideropt.models.divider.scenarios import BASE, Scenarios
 from divideropt.models.uncertain import Uncertain
 from divideropt.problem import Constraint, DesignSpace, Objective, Problem, Variable
@@ -77,20 +76,22 @@ def _certain_model(campaign: Campaign) -> Model:
     if not isinstance(config, DividerConfig):
         return config.make()
     models = {
-        name: Divider(config.formulation, scenario, config.solver.to_settings(), config.groove_loss == "entrance")
+        name: divider.Divider(
+            config.formulation, scenario, config.solver.to_settings(), config.groove_loss == "entrance"
+        )
         for name, scenario in config.all_scenarios().items()
     }
     worst = worst_cases(campaign)
     return Scenarios(models, worst, config.changes()) if worst or len(models) > 1 else models[BASE]
 
 
-def dividers(model: Model) -> Mapping[str, Divider]:
+def dividers(model: Model) -> Mapping[str, "divider.Divider"]:
     """Return the divider under each scenario by name, the campaign's own first; nothing for another model."""
     if isinstance(model, Uncertain):
         return dividers(model.model)
     if isinstance(model, Scenarios):
         return model.models
-    return {BASE: model} if isinstance(model, Divider) else {}
+    return {BASE: model} if isinstance(model, divider.Divider) else {}
 
 
 def dimensioned(model: Model) -> Dimensioned | None:

@@ -145,6 +145,7 @@ class Display:
         """Show the files of `folder` for these runs on `stream`, in place if that is a terminal."""
         self._folder, self._budgets = folder, budgets
         self._console = Console(file=stream, highlight=False)
+        self._in_place = _repaints(self._console)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._show, daemon=True)
 
@@ -168,7 +169,7 @@ class Display:
             self._show_until_left()
 
     def _show_until_left(self) -> None:
-        if self._console.is_terminal:
+        if self._in_place:
             with Live(self._table(), console=self._console, auto_refresh=False) as live:
                 while not self._over.wait(SHOW_SECONDS):
                     live.update(self._table(), refresh=True)
@@ -233,7 +234,8 @@ class Counter:
         """Begin at 0; `words` has a place for the count and one for the total."""
         self._words, self._total, self._count, self._width = words, total, 0, 0
         self._console = Console(file=stream, highlight=False)
-        self._seconds = SHOW_SECONDS if self._console.is_terminal else LINE_SECONDS
+        self._in_place = _repaints(self._console)
+        self._seconds = SHOW_SECONDS if self._in_place else LINE_SECONDS
         self._began = self._shown = time.monotonic()
 
     def __enter__(self) -> "Counter":
@@ -248,7 +250,7 @@ class Counter:
         """Count one more."""
         self._count += 1
         if time.monotonic() - self._shown >= self._seconds:
-            self._show("\r" if self._console.is_terminal else "\n")
+            self._show("\r" if self._in_place else "\n")
 
     def _show(self, end: str) -> None:
         self._shown = time.monotonic()
@@ -259,14 +261,20 @@ class Counter:
                 words += f", {_duration(each * (self._total - self._count))} left"
             # in place, spaces cover what was longer
             self._console.print(f"{words:{self._width}}", end=end, soft_wrap=True)
-            self._width = len(words) if self._console.is_terminal else 0
+            self._width = len(words) if self._in_place else 0
+
+
+def _repaints(console: Console) -> bool:
+    """Whether a line can be written over: on no dumb terminal, file or pipe, whatever FORCE_COLOR says."""
+    return bool(console.file.isatty()) and not console.is_dumb_terminal
 
 
 def _line(s: Standing) -> str:
+    rate = f", {s.rate:.0f}/s" if s.rate > 0.0 else ""
     replayed = f", {s.replayed} from the log" if s.replayed else ""
     left = "" if not s.left else f", {_duration(s.left)} left at most"
     return (
-        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({_state(s)}), {s.rate:.0f}/s{left}, "
+        f"{s.run}: {s.done} of {s.budget} evaluations{replayed} ({_state(s)}){rate}{left}, "
         f"best max λ {_number(s.best)}, hypervolume {_number(s.hypervolume)}"
     )
 

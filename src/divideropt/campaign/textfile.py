@@ -3,9 +3,18 @@
 import os
 import re
 import stat
+from contextlib import suppress
+from difflib import get_close_matches
+from itertools import islice
 from pathlib import Path
 
-from divideropt.errors import FileMistakes, Mistake, UsageError
+from divideropt.errors import LONGEST_WORDS, FileMistakes, Mistake, UsageError
+
+MOST_COMPARED = 1000
+"""With no more files is a name compared that is not there."""
+
+ALIKE = 0.75
+"""How much of two names is to be the same for one to be meant by the other; most end in the same five letters."""
 
 
 def read_text_file(path: Path | str, most: int, what: str) -> str:
@@ -50,15 +59,33 @@ def _bytes(path: Path | str, most: int) -> bytes:
                 )
             return file.read(most + 1)
     except FileNotFoundError:
-        raise UsageError(f"{path}: there is no such file; check the name and the folder") from None
+        raise UsageError(f"{path}: there is no such file; {_instead_of(Path(path))}") from None
     except IsADirectoryError:
-        raise UsageError(f"{path}: this is a folder; name the file in it") from None
+        raise UsageError(f"{path}: {_of_folder(Path(path))}") from None
     except PermissionError:
         raise UsageError(f"{path}: reading it is not permitted; check the file's permissions") from None
     except OSError as error:
         raise UsageError(f"{path}: it cannot be read ({error.strerror}); check the path") from None
     except ValueError:
         raise UsageError(f"{str(path)!r} cannot be the name of a file; check the path") from None
+
+
+def _of_folder(path: Path) -> str:
+    within = path / "campaign.yaml"
+    if within.is_file():
+        return f"this is a store, the folder of a campaign's results; its campaign is {within}"
+    return "this is a folder; name the file in it"
+
+
+def _instead_of(path: Path) -> str:
+    """Say what may have been meant by a file that is not there."""
+    with suppress(OSError):
+        beside = [other.name for other in islice(path.parent.iterdir(), MOST_COMPARED)]
+        meant = get_close_matches(path.name[:LONGEST_WORDS], beside, n=1, cutoff=ALIKE)
+        if meant:
+            return f"did you mean {path.with_name(meant[0])}?"
+    begin = "; `divideropt init` writes a campaign to start from" if path.suffix in (".yaml", ".yml") else ""
+    return f"check the name and the folder{begin}"
 
 
 def _open_at_once(path: str, flags: int) -> int:

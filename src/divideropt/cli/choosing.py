@@ -15,9 +15,9 @@ from divideropt.cli.teaching import Taught
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt compare results/divider",
-        "divideropt compare results/divider results/other --at 2000",
-        "divideropt compare results/divider --json --out indicators.csv",
+        "divideropt compare results/my",
+        "divideropt compare results/my results/second --at 200",
+        "divideropt compare results/my --json --out indicators.csv",
     ),
 )
 @click.argument("stores", type=FILE, nargs=-1, required=True, metavar="STORE...")
@@ -44,9 +44,9 @@ def compare(stores: tuple[Path, ...], evaluations: int | None, as_json: bool, ou
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt sensitivity campaigns/divider.yaml",
-        "divideropt sensitivity campaigns/divider.yaml --method sobol --samples 16384",
-        "divideropt sensitivity campaigns/divider.yaml --parameter 'stem_ratio=0.1..0.6' --study stem",
+        "divideropt sensitivity my.yaml",
+        "divideropt sensitivity my.yaml --method sobol --samples 4096",
+        "divideropt sensitivity my.yaml --parameter 'stem_ratio=0.1..0.6' --study stem",
     ),
 )
 @click.argument("campaign", type=FILE)

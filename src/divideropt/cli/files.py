@@ -19,7 +19,7 @@ TEMPLATES = ("divider", "quickstart")
     examples=(
         "divideropt init",
         "divideropt init my.yaml --template quickstart",
-        "divideropt init my.yaml --schema    # and its JSON schema beside it, for an editor",
+        "divideropt init valve.yaml --schema    # and its JSON schema beside it, for an editor",
     ),
 )
 @click.argument("file", type=FILE, default=Path("campaign.yaml"))
@@ -46,8 +46,8 @@ def init(file: Path, template: str, with_schema: bool) -> None:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt check campaigns/divider.yaml",
-        "divideropt check campaigns/divider.yaml --json",
+        "divideropt check my.yaml",
+        "divideropt check my.yaml --json",
     ),
 )
 @click.argument("campaign", type=FILE)
@@ -55,7 +55,7 @@ def init(file: Path, template: str, with_schema: bool) -> None:
 def check(campaign: Path, as_json: bool) -> None:
     """Read a campaign and say every mistake in it, or what it would run."""
     try:
-        asked = load(campaign)
+        asked = load(campaign, to_simulate=False)
     except FileMistakes as error:
         if as_json:
             found = [{"line": m.line, "column": m.column, "message": m.message} for m in error.mistakes]

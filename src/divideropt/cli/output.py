@@ -26,14 +26,15 @@ WORKERS = click.option(
 )
 
 
-def load(path: Path | None) -> "Campaign":
+def load(path: Path | None, *, to_simulate: bool = True) -> "Campaign":
     """Read a campaign; the one that ships with the package where none is given. Raises as `load_campaign`."""
     from divideropt.campaign.reader import read_document
 
     document = None if path is None else read_document(path)  # before the rest is imported, which takes a second
     from divideropt.campaign.load import campaign_of, default_campaign
 
-    say_when_compiling()
+    if to_simulate:
+        say_when_compiling()
     return default_campaign() if document is None else campaign_of(document)
 
 

@@ -18,7 +18,7 @@ from divideropt.errors import DivideroptError, FileMistakes
 def main() -> None:
     """Run the command and leave with its exit code."""
     try:
-        code = commands.main(standalone_mode=False) or 0
+        code = commands.main(prog_name="divideropt", standalone_mode=False) or 0
     except click.ClickException as error:
         error.show()
         code = 2
@@ -65,4 +65,5 @@ def commands() -> None:
 
     A campaign is a YAML file that says what is optimised; `init` writes one to start from. Its results are a folder,
     the store, which `run` goes on with where it stopped. Data goes to standard output, words to standard error.
+    A command is explained by `divideropt COMMAND --help`.
     """

@@ -32,18 +32,21 @@ if TYPE_CHECKING:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt run campaigns/quickstart.yaml",
-        "divideropt run campaigns/divider.yaml --workers 4 --store results/second",
-        "divideropt run campaigns/divider.yaml           # once more: goes on, or says that all is done",
-        "divideropt run campaigns/divider.yaml --json | jq '.front'",
+        "divideropt run my.yaml",
+        "divideropt run my.yaml --workers 4 --store results/second",
+        "divideropt run my.yaml    # once more: goes on, or says that all is done",
+        "divideropt run my.yaml --json | jq '.front'",
     ),
 )
 @click.argument("campaign", type=FILE)
 @click.option("--store", type=FILE, help="Folder of the results; results/NAME where not given.")
 @WORKERS
 @click.option("--fresh", is_flag=True, help="Begin anew; an existing store is moved aside, not deleted.")
+@click.option(
+    "--branch", is_flag=True, help="Where this processor would not repeat a log to the bit, go on as a new run."
+)
 @AS_JSON
-def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as_json: bool) -> None:
+def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, branch: bool, as_json: bool) -> None:
     """Run a campaign, or go on where its store stopped; write fronts and report.
 
     Runs that are done are not done again, so that the same call is safe whenever it is made. The last line says where
@@ -55,8 +58,9 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as
 
     folder = store or Path("results") / asked.name
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
+    again += " --branch" if branch else ""
     try:
-        done = run_and_report(asked, folder, workers, sys.stderr, again, fresh=fresh)
+        done = run_and_report(asked, folder, workers, sys.stderr, again, fresh=fresh, branch=branch)
     except NoFeasibleDesignError:
         say(f"report: {Store(folder).report_path}")
         raise
@@ -77,7 +81,7 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as
 
 @click.command(
     cls=Taught,
-    examples=("divideropt verify results/divider", "divideropt verify results/divider --workers 4 --json"),
+    examples=("divideropt verify results/my", "divideropt verify results/my --workers 4 --json"),
 )
 @click.argument("store", type=FILE)
 @WORKERS
@@ -94,15 +98,15 @@ def verify(store: Path, workers: int | None, as_json: bool) -> None:
     again = shlex.join(["divideropt", "verify", str(store)])
     count = verify_store(Store(store), workers, sys.stderr, again)
     report = write_report(Store(store))
-    say(f"report: {report}")
     say(_counted(count))
+    say(f"report: {report}")
     if as_json:
         write_json({"store": str(store), "report": str(report), **dataclasses.asdict(count)})
 
 
 @click.command(
     cls=Taught,
-    examples=("divideropt status results/divider", "divideropt status results/divider --json | jq '.runs[].best'"),
+    examples=("divideropt status results/my", "divideropt status results/my --json | jq '.runs[].best'"),
 )
 @click.argument("store", type=FILE)
 @AS_JSON
@@ -121,7 +125,7 @@ def status(store: Path, as_json: bool) -> None:
 
 @click.command(
     cls=Taught,
-    examples=("divideropt report results/divider", "divideropt report results/divider --out divider.html"),
+    examples=("divideropt report results/my", "divideropt report results/my --out my.html"),
 )
 @click.argument("store", type=FILE)
 @click.option("--out", type=FILE, help="Where to write it; report.html in the store where not given.")
@@ -138,8 +142,8 @@ def report(store: Path, out: Path | None) -> None:
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt export results/divider --format csv",
-        "divideropt export results/divider --format parquet --out tables",
+        "divideropt export results/my --format csv",
+        "divideropt export results/my --format parquet --out tables",
     ),
 )
 @click.argument("store", type=FILE)

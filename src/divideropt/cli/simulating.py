@@ -30,7 +30,7 @@ SCENARIO = click.option("--scenario", default="scenario", metavar="NAME", help="
     cls=Taught,
     examples=(
         "divideropt simulate --set 'spool_radius=9 mm' --out response.html",
-        "divideropt simulate campaigns/divider.yaml --set 'groove_width=1 mm' > response.csv",
+        "divideropt simulate my.yaml --set 'groove_width=1 mm' > response.csv",
         "divideropt simulate --set 'spool_radius=9 mm' --json    # every metric and the outcome",
     ),
 )
@@ -68,8 +68,8 @@ def simulate(
     cls=Taught,
     examples=(
         "divideropt evaluate designs.csv > results.csv",
-        "divideropt evaluate designs.csv --campaign campaigns/duty.yaml --out results.parquet",
-        "divideropt evaluate results/divider-csv/fronts/combined.csv > again.csv    # of a front that `export` wrote",
+        "divideropt evaluate designs.csv --campaign my.yaml --out results.parquet",
+        "divideropt evaluate results/my-csv/fronts/combined.csv > again.csv    # of what `export` wrote",
     ),
 )
 @click.argument("designs", type=FILE)
@@ -97,7 +97,7 @@ def evaluate(designs: Path, campaign: Path | None, out: Path | None) -> None:
     cls=Taught,
     examples=(
         "divideropt error-budget --set 'spool_radius=9 mm'",
-        "divideropt error-budget campaigns/divider.yaml --out budget.csv",
+        "divideropt error-budget my.yaml --out budget.csv",
     ),
 )
 @click.argument("campaign", type=FILE, required=False)

@@ -4,15 +4,28 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from divideropt.ode.base import Event, FloatArray, Rates, SolverSettings, Trajectory
-from divideropt.ode.rosenbrock import integrate_by_rosenbrock
 from divideropt.ode.scipy_solvers import SCIPY_METHODS, integrate_by_scipy
 
 ROSENBROCK = "rosenbrock"
 
 Method = Callable[[Rates, Rates, tuple[float, float], FloatArray, SolverSettings, Event | None], Trajectory]
 
+
+def _by_rosenbrock(
+    rates: Rates,
+    jacobian: Rates,
+    span: tuple[float, float],
+    start: FloatArray,
+    settings: SolverSettings,
+    event: Event | None = None,
+) -> Trajectory:
+    from divideropt.ode.rosenbrock import integrate_by_rosenbrock  # noqa: PLC0415 (late: it needs the compiler)
+
+    return integrate_by_rosenbrock(rates, jacobian, span, start, settings, event)
+
+
 METHODS: Mapping[str, Method] = MappingProxyType(
-    {ROSENBROCK: integrate_by_rosenbrock, **dict.fromkeys(SCIPY_METHODS, integrate_by_scipy)}
+    {ROSENBROCK: _by_rosenbrock, **dict.fromkeys(SCIPY_METHODS, integrate_by_scipy)}
 )
 """What integrates, by the name a campaign gives."""
 

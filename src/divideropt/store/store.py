@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from copy import copy
 from datetime import UTC, datetime
+from difflib import get_close_matches
 from pathlib import Path
 
 import pyarrow as pa
@@ -29,6 +30,9 @@ from divideropt.store.tables import check_replaceable, read_table, write_table
 
 STUDIES = "sensitivity"
 """Where a campaign's store has its sensitivity studies, each a store in a folder of its own."""
+
+FEW = 10
+"""So many stores are named where one was looked for in their folder."""
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
@@ -94,8 +98,20 @@ class Store:
             StoreError: It cannot be read.
         """
         if not self.exists:
-            raise UsageError(f"{self.folder}: no store there (no campaign.yaml); name the folder of a store")
+            raise UsageError(f"{self.folder}: no store there ({self._instead()}")
         return read_campaign(self.campaign_path)
+
+    def _instead(self) -> str:
+        """Say why the folder is no store, and what may have been meant."""
+        if self.folder.is_file():
+            return "it is a file); name the folder that `divideropt run` has made of a campaign: results/NAME"
+        inside = sorted(path.parent.name for path in self.folder.glob("*/campaign.yaml"))
+        if inside:
+            return f"no campaign.yaml), but in it: {', '.join(inside[:FEW])}; name one of these"
+        beside = [path.parent.name for path in self.folder.parent.glob("*/campaign.yaml")]
+        meant = get_close_matches(self.folder.name, beside, n=1)
+        hint = f"did you mean {self.folder.with_name(meant[0])}?" if meant else "name the folder of a store"
+        return f"no campaign.yaml); {hint}"
 
     def write_campaign(self, text: str) -> None:
         """Replace the campaign as resolved.
@@ -110,6 +126,10 @@ class Store:
         """Replace the report and return its path."""
         publish(self.report_path, lambda p: p.write_text(text, encoding="utf-8"))
         return self.report_path
+
+    def has_log(self, run: str) -> bool:
+        """Whether anything of a run is logged."""
+        return any((self.folder / "evaluations" / run).glob("part-*.parquet"))
 
     def log(self, run: str, schema: TableSchema) -> RunLog:
         """Open a run's log.

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from divideropt.models.divider import Scenario, groove_kernels, kernels
 from divideropt.models.divider.formulations import OrificeLaw, PortRange, Stop
-from divideropt.models.divider.kernels import N_STATES, ROOT_BLEND, STATES, jacobian, rates, signed_root
+from divideropt.models.divider.kernels import ROOT_BLEND, jacobian, rates, signed_root
+from divideropt.models.divider.states import N_STATES, STATES
 
 NESTED = [
     (module, name, f.py_func)

@@ -6,8 +6,8 @@ from scipy.integrate import trapezoid
 
 from divideropt.models.base import Outcome
 from divideropt.models.divider import QUANTITIES, Divider, Scenario, load_step, solver_settings
-from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.metrics import measure
+from divideropt.models.divider.states import STATES
 
 TIGHT = solver_settings("LSODA", 1e-10, max_steps=100_000)
 REFERENCE = solver_settings("Radau", 1e-10, max_steps=100_000)

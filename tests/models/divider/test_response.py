@@ -3,7 +3,8 @@ import pytest
 
 from divideropt.models.base import Outcome
 from divideropt.models.divider import Divider, Scenario, load_step, solver_settings
-from divideropt.models.divider.kernels import STATES, rates
+from divideropt.models.divider.kernels import rates
+from divideropt.models.divider.states import STATES
 from divideropt.ode import SolverStatus
 
 TIGHT = solver_settings("LSODA", 1e-10, max_steps=100_000)

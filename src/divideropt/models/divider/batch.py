@@ -8,11 +8,11 @@ the Rosenbrock method. A design that leaves it, because a rest is not found or a
 import math
 
 from divideropt.models.divider.coefficient_kernels import apply_span, prepare
-from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.metric_kernels import measure_course
 from divideropt.models.divider.rest_kernels import centred_state, polish
 from divideropt.models.divider.result_record import LIMIT_CYCLE, NOT_FOLLOWED
 from divideropt.models.divider.run_kernels import let_go, run
+from divideropt.models.divider.states import STATES
 from divideropt.models.divider.verdict_kernels import judge_course
 from divideropt.ode.compiled import compiled
 from divideropt.ode.rosenbrock import FINISHED, TAKEN

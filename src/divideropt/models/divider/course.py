@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.coefficients import rules_record, span_records
-from divideropt.models.divider.kernels import N_STATES
 from divideropt.models.divider.record import COEFFICIENTS, GEOMETRY, PARAMETER_ROW, Records, blank
 from divideropt.models.divider.response import Response
+from divideropt.models.divider.states import N_STATES
 from divideropt.ode import SolverStatus
 from divideropt.ode.base import NODES_PER_STEP
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.formulations import Stop
-from divideropt.models.divider.kernels import N_STATES, STATES, jacobian, rates
+from divideropt.models.divider.kernels import jacobian, rates
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.rest_kernels import (
     BALANCES,
@@ -28,6 +28,7 @@ from divideropt.models.divider.rest_kernels import (
 )
 from divideropt.models.divider.rest_kernels import reach as farthest
 from divideropt.models.divider.run_kernels import RELAXATION_STEPS, let_go
+from divideropt.models.divider.states import N_STATES, STATES
 from divideropt.ode.rosenbrock import Workspace
 
 BRACKETS = 64

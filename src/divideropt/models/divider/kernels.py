@@ -11,12 +11,8 @@ import numpy as np
 
 from divideropt.models.base import FloatArray
 from divideropt.models.divider.groove_kernels import fold_pilot, groove_excess
+from divideropt.models.divider.states import FRICTION_VELOCITY, N_STATES
 from divideropt.ode.compiled import compiled
-
-STATES = ("Ps", "Pa1", "Pa2", "Pb1", "Pb2", "xdot", "x", "PL1", "PL2")
-"""Names of the states, in the order of a state vector."""
-
-N_STATES = len(STATES)
 
 ROOT_BLEND = 100.0
 """Below this drop [Pa] the smooth root is a cubic: far below any drop that matters, far above rounding."""
@@ -26,9 +22,6 @@ TANH_DROP = 1e4
 
 STEEPEST = 1.0
 """The signed root's infinite slope at 0 is replaced in the Jacobian, not in the rates, by that at this drop [Pa]."""
-
-FRICTION_VELOCITY = 1e-6
-"""ẋ_tan of (2.17) [m/s]: Coulomb friction is Fc tanh(ẋ/ẋ_tan)."""
 
 STOP_STIFFNESS = 1e8
 """End stop [N/m]: the largest end force, some 2 kN, presses the spool 20 µm into it."""

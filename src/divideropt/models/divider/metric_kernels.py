@@ -8,8 +8,9 @@ import math
 
 from divideropt.models.divider.groove_kernels import groove_inlets
 from divideropt.models.divider.ideal import desired_flows
-from divideropt.models.divider.kernels import STATES, load_flows
+from divideropt.models.divider.kernels import load_flows
 from divideropt.models.divider.rest_kernels import margin
+from divideropt.models.divider.states import STATES
 from divideropt.models.divider.transient import (
     fill_flows,
     integrals,

@@ -15,7 +15,6 @@ from divideropt.models.divider.coefficients import options_record, rules_record,
 from divideropt.models.divider.course import empty_course
 from divideropt.models.divider.dimensions import DIMENSIONS, measured, remade
 from divideropt.models.divider.formulations import FORMULATIONS, Formulation
-from divideropt.models.divider.kernels import N_STATES
 from divideropt.models.divider.metrics import Findings, measure
 from divideropt.models.divider.parameters import PARAMETERS
 from divideropt.models.divider.quantities import quantities_of
@@ -25,6 +24,7 @@ from divideropt.models.divider.result_record import NOT_FOLLOWED, SOUND
 from divideropt.models.divider.run_kernels import RELAXATION_STEPS
 from divideropt.models.divider.scenario import Scenario
 from divideropt.models.divider.sketch import divider_sketch
+from divideropt.models.divider.states import N_STATES
 from divideropt.models.divider.tolerances import resolving_friction, solver_settings
 from divideropt.models.divider.verdicts import OK, verdict_of
 from divideropt.ode import ROSENBROCK, SolverSettings

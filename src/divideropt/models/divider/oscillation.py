@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.models.divider.kernels import STATES, load_flows
+from divideropt.models.divider.kernels import load_flows
 from divideropt.models.divider.response import Phase
+from divideropt.models.divider.states import STATES
 from divideropt.ode.base import NODES
 from divideropt.ode.compiled import compiled
 

@@ -17,16 +17,11 @@ from divideropt.models.divider.equilibrium import (
 )
 from divideropt.models.divider.formulations import Formulation, Stop
 from divideropt.models.divider.geometry import Geometry
-from divideropt.models.divider.kernels import (
-    STATES,
-    flows_of,
-    jacobian,
-    rates,
-    zero_state,
-)
+from divideropt.models.divider.kernels import flows_of, jacobian, rates, zero_state
 from divideropt.models.divider.record import Design
 from divideropt.models.divider.run_kernels import run
 from divideropt.models.divider.scenario import Scenario, Span
+from divideropt.models.divider.states import STATES
 from divideropt.ode import ROSENBROCK, Event, SolverSettings, SolverStatus, Trajectory, integrate
 from divideropt.ode.rosenbrock import Workspace
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from divideropt.models.divider.elimination_kernels import factorise_shifted, solve_shifted
-from divideropt.models.divider.kernels import N_STATES, STATES, STOP_STIFFNESS, motion
+from divideropt.models.divider.kernels import STOP_STIFFNESS, motion
+from divideropt.models.divider.states import N_STATES, STATES
 from divideropt.ode.compiled import compiled
 from divideropt.ode.spectrum import largest_real_part
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from divideropt.models.divider.elimination_kernels import factorise_shifted, solve_shifted
-from divideropt.models.divider.kernels import N_STATES, STATES, motion
+from divideropt.models.divider.kernels import motion
+from divideropt.models.divider.states import N_STATES, STATES
 from divideropt.ode.compiled import compiled
 from divideropt.ode.rodas5p import GAMMA, STAGES
 from divideropt.ode.rosenbrock import (

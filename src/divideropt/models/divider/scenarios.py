@@ -4,13 +4,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from divideropt.models.base import FloatArray, Outcome, Parameter, Quantity, Verdict
-from divideropt.models.divider.model import Divider
 from divideropt.models.divider.quantities import GEOMETRIC, quantities_of
 from divideropt.models.uncertain import fails_in_samples
+
+if TYPE_CHECKING:
+    from divideropt.models.divider.model import Divider
 
 BASE = "scenario"
 """Name of the scenario whose quantities have plain names."""
@@ -53,12 +56,12 @@ class Scenarios:
         changes: Parameters that a scenario sets whatever the design says, SI, by its name and theirs.
     """
 
-    models: Mapping[str, Divider]
+    models: Mapping[str, "Divider"]
     worst: tuple[Worst, ...] = ()
     changes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
-    def base(self) -> Divider:
+    def base(self) -> "Divider":
         """The divider under the scenario whose quantities have plain names."""
         return self.models[BASE]
 

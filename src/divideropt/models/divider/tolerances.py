@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from divideropt.models.divider.kernels import FRICTION_VELOCITY, STATES
+from divideropt.models.divider.states import FRICTION_VELOCITY, STATES
 from divideropt.ode import ROSENBROCK, SolverSettings
 
 DEFAULT_METHOD = ROSENBROCK

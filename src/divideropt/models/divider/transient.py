@@ -8,7 +8,8 @@ import math
 
 import numpy as np
 
-from divideropt.models.divider.kernels import STATES, load_flows
+from divideropt.models.divider.kernels import load_flows
+from divideropt.models.divider.states import STATES
 from divideropt.ode.base import NODE_WEIGHTS, NODES, lagrange_weights
 from divideropt.ode.compiled import compiled
 from divideropt.ode.polynomial import coefficients, value_at

@@ -2,7 +2,6 @@
 
 import math
 
-from divideropt.models.divider.kernels import STATES
 from divideropt.models.divider.metric_kernels import REST_TOLERANCE, distance_from_rest, on_stop, rests_at_root
 from divideropt.models.divider.oscillation import oscillation
 from divideropt.models.divider.result_record import (
@@ -15,6 +14,7 @@ from divideropt.models.divider.result_record import (
     UNSETTLED,
     UNSTABLE,
 )
+from divideropt.models.divider.states import STATES
 from divideropt.ode.compiled import compiled
 
 LAST_PART = 0.1
