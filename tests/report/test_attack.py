@@ -135,6 +135,7 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
         campaign=hostile,
         front=designs,
         responses=responses,
+        sheets=None,
         runs=tuple(
             replace(
                 run,
