@@ -536,9 +536,7 @@ def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
     path = tmp_path / "large.html"
     values = np.abs(random.normal(1.0, 0.5, (20_000, 3))) * data.front[0].objectives
     tried = Tried(values, random.random(20_000) > 0.1, 25_000, 3)
-    rows = {d.design_id: data.sketches.rows[data.front[i % len(data.front)].design_id] for i, d in enumerate(front)}
-    sketches = replace(data.sketches, rows={**data.sketches.rows, **rows})
-    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried, sketches=sketches))
+    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried))
     path.write_text(text, encoding="utf-8")
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(path.as_uri(), timeout=PATIENCE)
