@@ -1,6 +1,6 @@
 """What several tests share: designs, the record a kernel reads, and the author's data."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,8 +10,10 @@ import pandas as pd
 import pytest
 from hypothesis import settings
 from numpy.typing import NDArray
+from playwright.sync_api import Browser
 from scipy.stats import qmc
 
+from browsing import chromium
 from divideropt.models.divider import FORMULATIONS, Divider, Scenario, parameter_set
 from divideropt.models.divider.coefficients import Valve
 from divideropt.models.divider.metrics import measure
@@ -119,3 +121,10 @@ def listing_design() -> Callable[[Any], dict[str, float]]:
         return _design(**{name: float(getattr(row, column)) for column, name in LISTING_COLUMNS.items()})
 
     return convert
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One for all tests of pages; while it is there, `asyncio.run` is refused in this thread."""
+    with chromium() as browser:
+        yield browser

@@ -83,6 +83,29 @@ class DamagedFileError(StoreError):
     """A file of the store is not as it was written; one that follows from the logs can be made again."""
 
 
+class BatchDiffersError(StoreError):
+    """A strategy asks for another batch than the one in its log.
+
+    Attributes:
+        run: The run.
+        batch: Which batch, from 0; so many before it are the same.
+    """
+
+    def __init__(self, run: str, batch: int) -> None:
+        """Keep both; as arguments, so that it passes from one process to another."""
+        super().__init__(run, batch)
+        self.run, self.batch = run, batch
+
+    def __str__(self) -> str:
+        """Say what it is, and what to do."""
+        return (
+            f"run {self.run}: batch {self.batch} of the log is not the one the strategy asks for, which should be "
+            "the same to the bit. Another version of a library, or another processor, computes differently; go on "
+            f"there, or here as a new run, which begins with the {self.batch} batches before it "
+            "(`divideropt run --branch`), or start anew (--fresh)."
+        )
+
+
 class NoFeasibleDesignError(DivideroptError):
     """The campaign ended and no design was feasible."""
 

@@ -1,6 +1,11 @@
 """The help teaches: examples first, which are calls that the program takes."""
 
+import os
+import re
 import shlex
+import subprocess
+import sys
+from pathlib import Path
 
 import click
 import pytest
@@ -47,3 +52,29 @@ def test_the_programs_own_examples_are_calls_too():
         program, name, *words = shlex.split(example)
         assert program == "divideropt"
         assert isinstance(commands.commands[name].make_context(name, words), click.Context)
+
+
+@pytest.mark.slow
+def test_examples_run_one_after_the_other_in_an_empty_folder(tmp_path):
+    """From `init` on; only the campaign is made smaller, and a table of designs is there."""
+    (tmp_path / "designs.csv").write_text("spool_radius,groove_width\n8e-3,1e-3\n9e-3,1.1e-3\n", encoding="utf-8")
+    (tmp_path / "divideropt").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m divideropt "$@"\n')
+    (tmp_path / "divideropt").chmod(0o755)
+    environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "PYTHONPATH": os.pathsep.join(sys.path)}
+    order = ["init", "check", "run", *(name for name in commands.commands if name not in ("init", "check", "run"))]
+    order.remove("evaluate")  # after `export`, whose tables it takes
+    for name in [*order, "evaluate"]:
+        for example in commands.commands[name].examples:
+            call = example.partition(" | ")[0]
+            done = subprocess.run(
+                call, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+            )
+            assert done.returncode == 0, (example, done.stderr)
+            _make_smaller(tmp_path / "my.yaml")
+
+
+def _make_smaller(campaign: Path) -> None:
+    if campaign.exists():
+        text = campaign.read_text(encoding="utf-8")
+        text = re.sub(r"generations: \d+", "generations: 5", re.sub(r"evaluations: \d+", "evaluations: 210", text))
+        campaign.write_text(text, encoding="utf-8")

@@ -21,6 +21,7 @@ FOLLOWED = (
     "how-to/own-model.md",
     "how-to/resume.md",
     "how-to/read-the-store.md",
+    "how-to/dimensions.md",
     "how-to/robust.md",
     "how-to/compare.md",
     "how-to/sensitivity.md",
@@ -107,6 +108,10 @@ def test_the_readmes_lines_of_python_run(followed, environment):
 def test_large_campaigns_come_out_as_their_page_says(tmp_path, environment, page):
     shutil.copytree(ROOT / "campaigns", tmp_path / "campaigns")
     do(page, tmp_path, environment)
+
+
+def test_dimensions_are_listed_as_their_page_says(followed, environment):
+    do("how-to/dimensions.md", followed, environment)
 
 
 @pytest.mark.slow

@@ -1,22 +1,15 @@
 """The documentation as HTML: it builds without a warning, asks nothing of any server, and reads on any screen."""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page
 
-from browsing import PATIENCE, chromium
+from browsing import PATIENCE
 
 WIDEST = ["how-to/compare.html", "model/nomenclature.html", "model/equations.html", "reference/campaign.html"]
 """Pages of wide tables, long lines of output and long formulas."""
-
-
-@pytest.fixture(scope="module", name="browser")
-def _browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 def visit(browser: Browser, address: str, **how: object) -> tuple[Page, list[str]]:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
-from browsing import PATIENCE, Opened, chromium
+from browsing import PATIENCE, Opened
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.runner import Runner
 from divideropt.errors import NoFeasibleDesignError
@@ -116,20 +116,15 @@ parallel: {{backend: sequential}}
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Opened]:
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Opened]]:
     """`opened(text, script)`: the document in a page of its own, drawn, after a script of the test's."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
     folder = tmp_path_factory.mktemp("pages")
 
     def open_page(text: str, script: str = "") -> Opened:
         path = folder / f"{len(list(folder.iterdir()))}.html"
         path.write_text(text, encoding="utf-8")
-        found = Opened(browser.new_page(viewport={"width": 1280, "height": 900}))
+        found = Opened(context.new_page())
         found.page.set_default_timeout(PATIENCE)
         found.page.on("console", lambda m: found.errors.append(m.text) if m.type == "error" else None)
         found.page.on("pageerror", lambda error: found.errors.append(str(error)))
@@ -148,4 +143,5 @@ def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Callab
         found.page.wait_for_selector("html[data-drawn]")
         return found
 
-    return open_page
+    yield open_page
+    context.close()

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from browsing import quiet
+from browsing import NO_WEBGL, quiet
 from divideropt.analysis import hypervolume
 from divideropt.campaign.companion import run_campaign
 from divideropt.campaign.load import parse_campaign
@@ -17,6 +17,7 @@ from divideropt.report.cost_tables import bests_table, reasons_table, volumes_ta
 from divideropt.report.data import COMPANION_NOTE, read_report
 from divideropt.report.page import render_report
 from divideropt.store import Store
+from pagechecks import axes_without_words, blank_figures, findings
 
 TEXT = """\
 name: cost
@@ -138,7 +139,9 @@ def test_the_companions_best_stands_scenario_by_scenario(folder, data):
 
 
 def test_the_page_draws_both_fronts_and_asks_for_nothing(data, opened):
-    found = opened(render_report(data))
+    text = render_report(data)
+    assert axes_without_words(text) == []
+    found = opened(text, NO_WEBGL)
     quiet(found)
     assert found.count("#cost .plot") == 3
     drawn = len({place.design_id for place in data.cost.placed if not place.nominal})
@@ -148,6 +151,8 @@ def test_the_page_draws_both_fronts_and_asks_for_nothing(data, opened):
     rows.last.click()
     assert found.page.locator("#cost-bests tr[aria-current]").count() == 2
     assert rows.last.get_attribute("data-id") in found.title()
+    assert blank_figures(found.page, "#cost .plot") == []
+    assert findings(found) == []
 
 
 def test_before_the_companion_has_ended_the_report_says_so(folder, tmp_path):

@@ -353,6 +353,26 @@ def test_nothing_is_wider_than_the_page(page, width, scheme):
     page.page.set_viewport_size({"width": width, "height": 900})
     page.page.wait_for_timeout(1000)  # the figures follow
     assert page.page.evaluate("document.documentElement.scrollWidth") <= width
-    fill = page.page.eval_on_selector(".histogram rect.failed:not(.few)", "e => getComputedStyle(e).fill")
-    assert fill == {"light": "rgb(213, 94, 0)", "dark": "rgb(240, 127, 53)"}[scheme]
     quiet(page)
+
+
+def test_bars_follow_the_theme(page):
+    def fill(scheme):
+        page.page.emulate_media(color_scheme=scheme)
+        bar = page.page.locator(".histogram rect.failed:not(.few)").first
+        return bar.evaluate("bar => getComputedStyle(bar).fill")
+
+    assert fill("light") != fill("dark")
+
+
+def test_where_no_design_meets_a_goal_that_is_said(spheres):
+    data = read_report(spheres(2, goal="{goal: 1e-9}"))
+    assert (data.headline.met, data.headline.meeting) == (0, {})
+    assert re.search(r"<dt>Goals on the front</dt>\s*<dd>No design meets any goal\.", render_report(data))
+
+
+def test_the_response_has_the_selected_design_above_it(page, data):
+    wanted = data.responses.designs[1].name
+    page.page.select_option("#choice", wanted)
+    assert page.page.locator("#response-title").inner_text() == f"Step response of {wanted}"
+    assert page.title() == f"Selected design: {wanted}"

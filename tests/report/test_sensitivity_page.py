@@ -22,6 +22,7 @@ from divideropt.report.sensitivity_data import INDICES
 from divideropt.report.sensitivity_figures import interactions
 from divideropt.report.sensitivity_page import render_study
 from divideropt.store import Store
+from pagechecks import axes_without_words, blank_figures, findings
 from sensitivity_models import g_indices, ishigami_indices
 
 PI = "3.141592653589793"
@@ -88,6 +89,7 @@ def test_a_study_without_failures_is_drawn(opened: Callable[..., Opened], tmp_pa
     quiet(page)
     assert page.count("#bars .bars .point") == 6
     assert page.count("#interactions .textpoint") >= 3
+    assert blank_figures(page.page, "#interactions") == []
     assert page.count("#convergence .scatterlayer .trace") == 3
     assert "No design failed" in page.page.locator("#failed").inner_text()
     assert page.page.locator("#undefined li").all_inner_texts() == [
@@ -101,7 +103,9 @@ def test_a_study_without_failures_is_drawn(opened: Callable[..., Opened], tmp_pa
 def test_failures_and_treatments_are_told(opened: Callable[..., Opened], tmp_path):
     store = studied(FAILING, tmp_path / "study", "sobol", 256)
     data = read_study(store)
-    page = opened(render_study(data))
+    document = render_study(data)
+    assert axes_without_words(document) == []
+    page = opened(document)
     quiet(page)
     text = page.page.locator("#failed").inner_text()
     assert f"{data.failures.total} of 2048 designs failed: {data.failures.total} unsettled (25 %)" in text
@@ -109,6 +113,8 @@ def test_failures_and_treatments_are_told(opened: Callable[..., Opened], tmp_pat
     rows = page.page.locator(".treatments tbody td:first-child").all_inner_texts()
     assert rows == ["working", "worst", "working", "simulated", "worst"]
     assert "lost, simulated: it is defined throughout in" in page.page.locator("#undefined").inner_text()
+    assert findings(page) == []
+    assert blank_figures(page.page, ".plot:not(#interactions)") == [], "of a sum there are no interactions"
 
 
 def test_the_folded_figure_is_drawn_at_the_pages_width_when_unfolded(opened: Callable[..., Opened], valve):
@@ -143,11 +149,15 @@ def test_a_morris_study_is_drawn(opened: Callable[..., Opened], tmp_path):
     store = studied(FAILING, tmp_path / "study", "morris", 40)
     write_study(store)
     assert set(pd.read_parquet(store.folder / "indices.parquet")["kind"]) == {"mu", "mu_star", "sigma"}
-    page = opened((store.folder / "report.html").read_text())
+    document = (store.folder / "report.html").read_text()
+    assert axes_without_words(document) == []
+    page = opened(document)
     quiet(page)
     assert page.count("#effects .scatterlayer .point") == 3
     assert page.count("#house") == 0
     assert "gives no effect" in page.page.locator("#failed").inner_text()
+    assert findings(page) == []
+    assert blank_figures(page.page) == []
 
 
 def test_the_text_has_the_numbers_and_the_house(valve):

@@ -21,7 +21,7 @@ from divideropt.models.divider import PARAMETERS
 from divideropt.report.data import ReportData, read_report
 from divideropt.report.page import render_report
 from divideropt.report.sheets import MOST_SIMULATED, read_sheets
-from divideropt.report.sketch_layout import lay_out
+from divideropt.report.sketch_layout import Drawing, lay_out
 from divideropt.report.sketch_svg import draw
 from divideropt.report.sketches import sketch_payload
 from divideropt.store import Store
@@ -56,6 +56,17 @@ def known(store: Store, data: ReportData) -> dict[str, dict[str, float]]:
         row = model.measured(np.array([[p[name] for name in PARAMETERS]]))[0]
         found[design.design_id] = dict(zip(model.dimensions, row.tolist(), strict=True))
     return found
+
+
+def variables_of(data: ReportData) -> np.ndarray:
+    return np.array([design.variables for design in data.front])
+
+
+def laid_out(data: ReportData) -> Drawing:
+    """The drawing as on the page: for every design that it has."""
+    candidates = [candidate.design for candidate in data.choosing.candidates] if data.choosing else []
+    variables = np.array([design.variables for design in (*data.front, *data.best, *candidates)])
+    return lay_out(data.sketches.model.sketch, data.sketches.model.dimensions, data.sketches.measured(variables))
 
 
 def pick(report: Opened, *ids: str) -> None:
@@ -100,7 +111,7 @@ def test_page_and_file_draw_the_same(report: Opened, data: ReportData, known) ->
     pick(report, design)
     paths = report.page.eval_on_selector_all("#sketch-drawn > path", "all => all.map((p) => p.getAttribute('d'))")
     texts = report.page.eval_on_selector_all("#sketch-drawn > text", "all => all.map((t) => t.textContent)")
-    mine = ET.fromstring(f"<svg>{draw(data.sketches.drawing, known[design])}</svg>")
+    mine = ET.fromstring(f"<svg>{draw(laid_out(data), known[design])}</svg>")
     theirs = [path.get("d") for path in mine.findall("path")]
     assert len(paths) == len(theirs) > 40
     for one, other in zip(paths, theirs, strict=True):
@@ -123,7 +134,7 @@ def test_every_design_that_can_be_selected_has_a_sketch(page_text: str, data: Re
     for column in columns:
         assert isinstance(column, float | int) or "of" in column or len(column) == len(ids)
     assert sum(isinstance(column, list) for column in columns) <= 8
-    place = data.sketches.drawing.names.index("groove_width")
+    place = payload["sketch"]["names"].index("groove width")
     for design, width in zip(ids, columns[place], strict=True):
         if design in known:
             assert width == pytest.approx(known[design]["groove_width"] * 1e3, rel=1e-3)
@@ -199,30 +210,39 @@ def test_a_model_without_a_sketch_has_no_section(spheres: Callable[..., Store]) 
 HOSTILE = "</script><script>alert(1)</script>_x"
 
 
+class Hostile:
+    """A model that draws a circle, and words all that it can as an attack."""
+
+    def __init__(self, model) -> None:
+        self.parameters = model.parameters
+        self.dimensions = {HOSTILE: Dimension(HOSTILE, "m", HOSTILE, HOSTILE, Kind.LENGTH)}
+        x = the(HOSTILE)
+        measure = Measure(HOSTILE, (x * 0.0, x), (x, x), "below")
+        self.sketch = Sketch((View(HOSTILE, (Shape(circle(x, x, x), "steel"),), (measure,)),), (HOSTILE,), HOSTILE)
+
+    def measured(self, designs):
+        return designs[:, :1]
+
+
 def test_words_of_a_model_are_text_and_a_step_that_makes_no_valve_is_said(
     opened: Callable[..., Opened], data: ReportData
 ) -> None:
-    sketch = Sketch(
-        (View(HOSTILE, (Shape(circle(the(HOSTILE), the(HOSTILE), the(HOSTILE)), "steel"),),
-              (Measure(HOSTILE, (the(HOSTILE) * 0.0, the(HOSTILE)), (the(HOSTILE), the(HOSTILE)), "below"),)),),
-        (HOSTILE,),
-        HOSTILE,
-    )  # fmt: skip
-    dimensions = {HOSTILE: Dimension(HOSTILE, "m", HOSTILE, HOSTILE, Kind.LENGTH)}
-    columns = {HOSTILE: np.linspace(0.01, 0.02, len(data.sketches.rows))}
-    drawing = lay_out(sketch, dimensions, columns)
+    hostile = replace(data.sketches, model=Hostile(data.sketches.model))
     design, sheets = next(iter(data.sheets.designs.items()))
     broken = {**data.sheets.designs, design: (*sheets[:3], HOSTILE)}
     changed = replace(
         data,
-        sketches=replace(data.sketches, drawing=drawing, columns=columns),
+        sketches=hostile,
         sheets=replace(data.sheets, designs=broken),
     )
     text = render_report(changed)
     assert text.count("</script>") == 3
     found = opened(text, NO_WEBGL)
     assert HOSTILE.replace("_", "") in found.page.locator("#sketch-drawn").text_content()
-    ET.fromstring(f"<svg>{draw(drawing, {HOSTILE: 0.01})}</svg>")
+    columns = hostile.measured(variables_of(data))
+    ET.fromstring(
+        f"<svg>{draw(lay_out(hostile.model.sketch, hostile.model.dimensions, columns), {HOSTILE: 0.01})}</svg>"
+    )
     pick(found, design)
     found.page.locator("#step").select_option("3")
     expect(found.page.locator("#sheet-said")).to_contain_text(f"there is no such valve: {HOSTILE}")
@@ -230,11 +250,11 @@ def test_words_of_a_model_are_text_and_a_step_that_makes_no_valve_is_said(
 
 
 def test_what_is_the_same_or_in_proportion_is_stored_once(data: ReportData) -> None:
-    payload = sketch_payload(data.sketches, data.sketches.rows)
-    by_name = dict(zip(data.sketches.drawing.names, payload["columns"], strict=True))
-    assert by_name["spool_length"] == 100.0
-    assert by_name["stem_diameter"]["times"] == pytest.approx(0.3)
-    assert by_name["groove_depth"]["times"] == pytest.approx(math.sqrt(3.0) / 2.0)
+    payload = sketch_payload(data.sketches, variables_of(data))
+    by_name = dict(zip(payload["names"], payload["columns"], strict=True))
+    assert by_name["spool length"] == 100.0
+    assert by_name["stem diameter"]["times"] == pytest.approx(0.3)
+    assert by_name["groove depth"]["times"] == pytest.approx(math.sqrt(3.0) / 2.0)
 
 
 def test_sheets_cost_no_more_than_a_few_simulations(store: Store, data: ReportData) -> None:

@@ -24,6 +24,7 @@ from divideropt.report.sweep_tables import effects_table, failed_words, moved, s
 from divideropt.report.sweeps_data import TOTAL, SweepsData, read_sweeps
 from divideropt.report.sweeps_page import THESIS_FIGURES, render_sweeps
 from divideropt.store import Store
+from pagechecks import axes_without_words, blank_figures, findings
 
 POINTS = 9
 PARAMETERS = ("groove_width=0.3 mm..2 mm", "spool_radius=8 mm..20 mm")
@@ -280,6 +281,12 @@ def test_a_models_words_are_no_markup(plain_data, opened):
 def test_nothing_leaves_the_page(page):
     page.page.wait_for_timeout(200)
     quiet(page)
+
+
+def test_the_page_is_accessible_its_axes_worded_and_its_figures_drawn(page, data):
+    assert axes_without_words(render_sweeps(data)) == []
+    assert findings(page) == []
+    assert blank_figures(page.page) == []
 
 
 def test_every_figure_is_drawn_for_every_parameter(page, data):

@@ -1,18 +1,18 @@
 """What was tried, behind the front: all of it or an even sample, nothing that failed."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
-import pyarrow as pa
 
-from divideropt.analysis import Summary
 from divideropt.problem import FAILURE_VIOLATION, Told
 from divideropt.report.figures import BEHIND, MARGIN, projections
 from divideropt.report.tried import MOST_TRIED, read_tried
 
 
-def log(values: np.ndarray, violation: np.ndarray) -> Summary:
-    return Summary(Told(values, violation[:, None]), {}, {}, None, pa.table({}))
+def log(values: np.ndarray, violation: np.ndarray) -> SimpleNamespace:
+    """What is asked of a log's summary."""
+    return SimpleNamespace(told=Told(values, violation[:, None]))
 
 
 def test_all_are_kept_where_they_are_few_but_those_that_failed():

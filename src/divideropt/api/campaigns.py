@@ -34,6 +34,7 @@ def run(
     *,
     workers: int | None = None,
     fresh: bool = False,
+    branch: bool = False,
     words: TextIO | None = None,
 ) -> Results:
     """Run a campaign, or go on where its store stopped; write fronts and report; `divideropt run`.
@@ -47,6 +48,7 @@ def run(
         store: Folder of the results; `results/NAME` where not given.
         workers: Processes at a time; the campaign's where not given.
         fresh: Whether to begin anew; an existing store is moved aside, not deleted.
+        branch: Whether a run whose log this processor would not repeat to the bit goes on as a new one.
         words: Where progress is shown; standard error where not given.
 
     Returns:
@@ -63,8 +65,7 @@ def run(
     """
     asked = campaign_given(campaign)
     folder = Path("results") / asked.name if store is None else Path(store)
-    done = run_and_report(
-        asked, folder, workers, sys.stderr if words is None else words, "divideropt.run, as before", fresh=fresh
-    )
+    stream = sys.stderr if words is None else words
+    done = run_and_report(asked, folder, workers, stream, "divideropt.run, as before", fresh=fresh, branch=branch)
     done.check()
     return Results(folder)

@@ -54,7 +54,14 @@ class Finished:
 
 
 def run_and_report(
-    campaign: Campaign, folder: Path, workers: int | None, words: TextIO, again: str, *, fresh: bool = False
+    campaign: Campaign,
+    folder: Path,
+    workers: int | None,
+    words: TextIO,
+    again: str,
+    *,
+    fresh: bool = False,
+    branch: bool = False,
 ) -> Finished:
     """Run what is not yet in a store, and write its report.
 
@@ -65,6 +72,7 @@ def run_and_report(
         words: Where progress is shown.
         again: The command, or the call, that goes on if this one is stopped.
         fresh: Whether to move an existing store aside first.
+        branch: Whether runs go on as new ones where their logs are no longer asked for.
 
     Returns:
         What came of it; `Finished.check` raises where runs were given up.
@@ -75,7 +83,7 @@ def run_and_report(
     """
     processes = workers or campaign.parallel.workers
     try:
-        done, companion = run_campaign(campaign, folder, processes, words, again, fresh=fresh)
+        done, companion = run_campaign(campaign, folder, processes, words, again, fresh=fresh, branch=branch)
     except NoFeasibleDesignError:
         write_report(Store(folder))
         raise

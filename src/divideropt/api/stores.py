@@ -12,10 +12,10 @@ from divideropt.api.designs import Simulated, simulate
 from divideropt.api.frames import preformatted, stored_frame
 from divideropt.api.given import listen
 from divideropt.campaign.beside import Side
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.export import export_store
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import plan_runs
 from divideropt.campaign.status import StoreStatus, read_status
 from divideropt.campaign.verify import verify_store
 from divideropt.errors import UsageError
@@ -45,7 +45,7 @@ class Results:
 
     def _repr_html_(self) -> str:
         """Say in a notebook what was asked for, and what there is to do with it."""
-        runs = ", ".join(run.name for run in plan_runs(self.campaign))
+        runs = ", ".join(run.name for run in stored_runs(self.campaign, self._store))
         return preformatted(
             f"{self!r}: {self.campaign.name}\n"
             f"runs: {runs}\n"
@@ -181,7 +181,7 @@ class Results:
         return export_store(self._store, format, None if out is None else Path(out)).folder
 
     def _check_run(self, run: str, *others: str) -> None:
-        known = [*others, *(planned.name for planned in plan_runs(self.campaign))]
+        known = [*others, *(planned.name for planned in stored_runs(self.campaign, self._store))]
         if run not in known:
             raise UsageError(f"{self.folder}: there is no run {run!r}; there are {', '.join(known)}")
 

@@ -7,9 +7,10 @@ import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import combined_front, representatives, summarise
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.nominal import nominal_campaign
-from divideropt.campaign.plan import build_problem, plan_runs
+from divideropt.campaign.plan import build_problem
 from divideropt.errors import DamagedFileError, StoreError
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
@@ -48,7 +49,7 @@ class Side:
         try:
             return self.store.read_front("combined", self.schema)
         except DamagedFileError:
-            names = sorted(run.name for run in plan_runs(self.campaign))
+            names = sorted(run.name for run in stored_runs(self.campaign, self.store))
             logs = (self.store.log(name, self.schema).read() for name in names)
             return combined_front(
                 [summarise(log, self.problem, self.schema).front for log in logs], self.problem, self.schema

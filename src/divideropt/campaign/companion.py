@@ -39,7 +39,14 @@ class Compared:
 
 
 def run_campaign(
-    campaign: Campaign, folder: Path, workers: int, words: TextIO, again: str, *, fresh: bool = False
+    campaign: Campaign,
+    folder: Path,
+    workers: int,
+    words: TextIO,
+    again: str,
+    *,
+    fresh: bool = False,
+    branch: bool = False,
 ) -> tuple[Outcomes, Compared | None]:
     """Run a campaign and, where it asks for one, its companion; or go on where that stopped.
 
@@ -50,6 +57,7 @@ def run_campaign(
         words: Where progress is shown.
         again: The command that goes on if this one is stopped.
         fresh: Whether to move an existing store aside first, with the companion's in it.
+        branch: Whether runs go on as new ones where their logs are no longer asked for.
 
     Returns:
         What came out of the campaign, and of its companion, None where it asks for none.
@@ -59,16 +67,16 @@ def run_campaign(
     """
     runner = Runner(campaign, folder, workers, words, again)
     if not campaign.nominal:
-        return runner.run(fresh=fresh), None
+        return runner.run(fresh=fresh, branch=branch), None
     companion = Companion(campaign, Store(folder), workers, words, again)
     if not fresh:
         companion.check()
     try:
-        done = runner.run(fresh=fresh)
+        done = runner.run(fresh=fresh, branch=branch)
     except NoFeasibleDesignError:
-        companion.run()  # whose front says where the campaign asks too much
+        companion.run(branch=branch)  # whose front says where the campaign asks too much
         raise
-    return done, companion.run()
+    return done, companion.run(branch=branch)
 
 
 class Companion:
@@ -93,8 +101,11 @@ class Companion:
         for side in (self._own, nominal):
             side.store.beside(side.schema).table()
 
-    def run(self) -> Compared:
+    def run(self, *, branch: bool = False) -> Compared:
         """Run what is not yet in the companion's store, then simulate what is lacking of either front.
+
+        Args:
+            branch: Whether runs go on as new ones where their logs are no longer asked for.
 
         Raises:
             DivideroptError: As `Runner.run`, but for a companion without a feasible design.
@@ -103,7 +114,8 @@ class Companion:
         say(f"nominal: now the companion, without scenarios and uncertainty, in {folder}", self._words)
         outcomes = None
         try:
-            outcomes = Runner(self._nominal.campaign, folder, self._workers, self._words, self._again).run()
+            runner = Runner(self._nominal.campaign, folder, self._workers, self._words, self._again)
+            outcomes = runner.run(branch=branch)
         except NoFeasibleDesignError as error:
             say(f"nominal: {error}", self._words)
         simulated = self._simulate_both()

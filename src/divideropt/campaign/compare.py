@@ -23,10 +23,11 @@ from divideropt.analysis import (
 )
 from divideropt.analysis.attainment import DIMENSIONS
 from divideropt.analysis.ranking import SIGNIFICANCE, least_p
+from divideropt.campaign.branches import active_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.extend import differences
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import build_problem, plan_runs, reference_of
+from divideropt.campaign.plan import build_problem, reference_of
 from divideropt.errors import NoFeasibleDesignError, UsageError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
@@ -102,7 +103,7 @@ def compare_stores(folders: Sequence[Path], evaluations: int | None = None) -> C
     schema = TableSchema.of(problem)
     logs: dict[tuple[Path, str, str], Summary] = {}
     for folder, campaign in zip(folders, campaigns, strict=True):
-        for run in plan_runs(campaign):
+        for run in active_runs(campaign, Store(folder)):
             log = Store(folder).log(run.name, schema).read()
             logs[folder, run.strategy, run.name] = summarise(log, problem, schema)
     several = len(folders) > 1

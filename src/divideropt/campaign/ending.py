@@ -32,6 +32,7 @@ class Reason(StrEnum):
     GOALS = "goals"
     STAGNATION = "stagnation"
     EXHAUSTED = "exhausted"
+    BRANCHED = "branched"
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,24 @@ def keep_ending(store: Store, run: Run, ended: Ended) -> None:
     store.write_ending(run.name, EndingRecord(str(ended.reason), ended.text, ended.evaluations, _asked(run)))
 
 
+def keep_branched(store: Store, run: Run, branch: Run, batch: int, logged: int) -> None:
+    """Keep in the store that a run is gone on with as another.
+
+    Args:
+        store: The store.
+        run: The run.
+        branch: The other.
+        batch: From which batch on they differ.
+        logged: Evaluations in the log of `run`.
+
+    Raises:
+        DiskError: The disk refused.
+        StoreInUseError: The store is another's now.
+    """
+    words = f"{branch.name} goes on from its first {batch} batches, since batch {batch} came out differently there"
+    store.write_ending(run.name, EndingRecord(str(Reason.BRANCHED), words, logged, _asked(run)))
+
+
 def kept_ending(store: Store, run: Run, evaluations: int) -> Ended | None:
     """Return how a run with so many logged evaluations ended; None where it has not, or may go on.
 
@@ -112,7 +131,9 @@ def kept_ending(store: Store, run: Run, evaluations: int) -> Ended | None:
         DamagedFileError: The store's record is damaged.
     """
     record = store.read_ending(run.name)
-    if record is None or record.evaluations != evaluations or record.asked != _asked(run):
+    if record is None or record.evaluations != evaluations:
+        return None
+    if record.asked != _asked(run) and record.reason != Reason.BRANCHED:
         return None
     return Ended(Reason(record.reason), record.text, record.evaluations)
 

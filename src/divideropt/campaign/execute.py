@@ -8,7 +8,7 @@ import numpy as np
 
 from divideropt.campaign.ending import Ended, Watch
 from divideropt.campaign.plan import Run
-from divideropt.errors import StoreError
+from divideropt.errors import BatchDiffersError, StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem, Told, one_thread
 
@@ -72,7 +72,8 @@ def execute(
         Why it ended, and after how many evaluations.
 
     Raises:
-        StoreError: The log holds another batch than the strategy asks for.
+        BatchDiffersError: The log holds another batch than the strategy asks for.
+        StoreError: The log is damaged, or goes on where the run would have ended.
         DiskError: The disk refused; what was flushed is intact.
         StoppedError: `stopping` said yes; the log is flushed.
     """
@@ -134,9 +135,5 @@ def _replayed(logged: Iterator[Evaluations], designs: FloatArray, run: str, coun
     if batch is None:
         return None
     if batch.designs.shape != designs.shape or batch.designs.tobytes() != designs.tobytes():
-        raise StoreError(
-            f"run {run}: batch {count} of the log is not the one the strategy asks for, which should be the same "
-            "to the bit. Another version of a library, or another processor, computes differently; go on there, "
-            "or start anew (--fresh)."
-        )
+        raise BatchDiffersError(run, count)
     return batch

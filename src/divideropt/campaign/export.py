@@ -17,8 +17,8 @@ import pyarrow.csv as pc
 import pyarrow.parquet as pq
 
 from divideropt.campaign.beside import Side
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.plan import plan_runs
 from divideropt.errors import UsageError
 from divideropt.store import Store
 from divideropt.store.files import publish_tree
@@ -93,7 +93,7 @@ def check_outside(out: Path) -> None:
 
 def _write_tables(side: Side, kind: str, counts: dict[str, int], folder: Path) -> None:
     """Write every table into a folder that is there, and count their rows; of the evaluations under no name."""
-    schema, runs = side.schema, [run.name for run in plan_runs(side.campaign)]
+    schema, runs = side.schema, [run.name for run in stored_runs(side.campaign, side.store)]
     parts = (part for run in runs for part in side.store.log(run, schema).read())
     counts[""] = _write_table(folder / f"evaluations.{kind}", schema.arrow, parts, kind)
     (folder / "fronts").mkdir()

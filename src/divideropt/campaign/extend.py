@@ -10,10 +10,11 @@ What touches no evaluation, `verification`, `optimality`, `nominal` and `paralle
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from divideropt.campaign.branches import active_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.ending import Ended, Watch
-from divideropt.campaign.plan import plan_runs, reference_of
+from divideropt.campaign.plan import reference_of
 from divideropt.campaign.reader import read_text
 from divideropt.errors import StoreError
 from divideropt.problem import Problem
@@ -57,7 +58,7 @@ def check_endings(asked: Campaign, problem: Problem, store: Store) -> None:
         StoreError: One has; or its log is damaged.
     """
     schema, reference = TableSchema.of(problem), reference_of(asked)
-    for run in plan_runs(asked):
+    for run in active_runs(asked, store):
         if run.termination is None:
             continue
         watch = Watch(run, problem, reference)

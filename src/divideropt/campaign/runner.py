@@ -19,10 +19,11 @@ from divideropt.analysis import (
     tally,
     worth_verifying,
 )
+from divideropt.campaign.branches import active_runs, branch_off, stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew, ProcessDiedError
 from divideropt.campaign.dump import dump_campaign
-from divideropt.campaign.ending import kept_ending
+from divideropt.campaign.ending import Reason, keep_branched, kept_ending
 from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_endings, check_extends
 from divideropt.campaign.hire import hired
@@ -30,11 +31,11 @@ from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import RESTARTS, Mishaps
 from divideropt.campaign.neighbourhood import Neighbourhood, with_residuals
-from divideropt.campaign.plan import Run, build_problem, dividers, plan_runs
+from divideropt.campaign.plan import Run, build_problem, dividers
 from divideropt.campaign.progress import Display, say
 from divideropt.campaign.verify import Verifier
 from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
-from divideropt.errors import DamagedFileError, NoFeasibleDesignError, StoreError
+from divideropt.errors import BatchDiffersError, DamagedFileError, NoFeasibleDesignError, StoreError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
 from divideropt.store import Store, TableSchema
@@ -91,11 +92,12 @@ class Runner:
         self._workers = workers
         self._words = words
 
-    def run(self, *, fresh: bool = False) -> Outcomes:
+    def run(self, *, fresh: bool = False, branch: bool = False) -> Outcomes:
         """Run what is not yet in the store, write the fronts, verify some of their points and compute KKT residuals.
 
         Args:
             fresh: Whether to move an existing store aside first.
+            branch: Whether a run goes on as a new one where its log is not what the strategy asks for.
 
         Returns:
             What came out.
@@ -113,8 +115,8 @@ class Runner:
         verifier = Verifier(self._campaign, problem, self._store, self._words, self._interruption)
         with self._working(problem, fresh) as crew:
             before = self._explored(verifier.schema)
-            skipped = self._done(problem)
-            failures = self._drive(problem, crew)
+            skipped = self._closed() + self._done(problem)
+            failures = self._drive(problem, crew, branch)
             logs, written = self._write_fronts(problem, verifier, crew, failures)
             combined = written["combined"]
             kkt, count = convergence(combined), tally(combined, verifier.schema)
@@ -136,7 +138,7 @@ class Runner:
         problem = build_problem(self._campaign)
         with self._working(problem, fresh) as crew:
             self._done(problem)
-            return self._drive(problem, crew)
+            return self._drive(problem, crew, False)
 
     @contextmanager
     def _working(self, problem: Problem, fresh: bool) -> Iterator[Crew | None]:
@@ -167,9 +169,14 @@ class Runner:
             )
         self._store.write_campaign(self._text)
 
+    def _closed(self) -> tuple[str, ...]:
+        """Name the runs that are gone on with as others."""
+        active = active_runs(self._campaign, self._store)
+        return tuple(run.name for run in stored_runs(self._campaign, self._store) if run not in active)
+
     def _done(self, problem: Problem) -> tuple[str, ...]:
         """Find the runs that have come to their end, as now asked for, and say so."""
-        schema, runs = TableSchema.of(problem), plan_runs(self._campaign)
+        schema, runs = TableSchema.of(problem), active_runs(self._campaign, self._store)
         found = tuple(run.name for run in runs if self._has_ended(run, schema))
         if found and len(found) < len(runs):
             names = ", ".join(found)
@@ -183,23 +190,46 @@ class Runner:
         """Whether a run's log goes to the end that was kept of it; every part of it is read and checked."""
         try:
             logged = sum(part.num_rows for part in self._store.log(run.name, schema).read())
-            return kept_ending(self._store, run, logged) is not None
+            ended = kept_ending(self._store, run, logged)
         except DamagedFileError:  # of the log's the replay says it, and the ending follows from the log
             return False
+        return ended is not None and ended.reason != Reason.BRANCHED
 
     def _explored(self, schema: TableSchema) -> int:
         """How many points were simulated again, or the neighbours of; damage is said before hours are spent."""
         again, around = (kept(schema).table() for kept in (self._store.verification, self._store.optimality))
         return int(again.num_rows + around.num_rows)
 
-    def _drive(self, problem: Problem, crew: Crew | None) -> Mapping[str, str]:
+    def _drive(self, problem: Problem, crew: Crew | None, branch: bool) -> Mapping[str, str]:
         """Do the runs; return why some were given up, by their names."""
-        endings = self._endings(problem, crew)
+        runs = active_runs(self._campaign, self._store)
+        endings = self._endings(runs, problem, crew)
+        if branch:
+            self._interruption.check()
+            branches = self._branches(runs, endings, TableSchema.of(problem))
+            endings = [e for e in endings if not isinstance(e.error, BatchDiffersError)]
+            endings += self._endings(branches, problem, crew) if branches else []
         self._raise_first(endings)
         return {ending.run: ending.failure for ending in endings if ending.failure is not None}
 
-    def _endings(self, problem: Problem, crew: Crew | None) -> list[Ending]:
-        runs = plan_runs(self._campaign)
+    def _branches(self, runs: Sequence[Run], endings: Sequence[Ending], schema: TableSchema) -> list[Run]:
+        """Begin a branch of each run whose log and strategy part, and say so; one that has ended is left as it is."""
+        found, planned = [], {run.name: run for run in runs}
+        for error in (ending.error for ending in endings):
+            if not isinstance(error, BatchDiffersError):
+                continue
+            origin = planned[error.run]
+            if self._has_ended(origin, schema):
+                say(f"{origin.name}: done; left as it is, though batch {error.batch} differs here", self._words)
+                continue
+            branch = branch_off(self._store, self._campaign, schema, origin, error.batch)
+            logged = sum(part.num_rows for part in self._store.log(origin.name, schema).read())
+            keep_branched(self._store, origin, branch, error.batch, logged)
+            say(f"{origin.name}: goes on as {branch.name}, from its first {error.batch} batches", self._words)
+            found.append(branch)
+        return found
+
+    def _endings(self, runs: Sequence[Run], problem: Problem, crew: Crew | None) -> list[Ending]:
         folder = self._store.status_folder
         with disk_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)
@@ -285,7 +315,7 @@ class Runner:
     ) -> tuple[dict[str, Summary], dict[str, pa.Table]]:
         """Write the fronts, marked with what is known of them; return them, and each run's log summed up."""
         schema = verifier.schema
-        names = sorted(run.name for run in plan_runs(self._campaign))
+        names = sorted(run.name for run in stored_runs(self._campaign, self._store))
         logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
         fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)

@@ -13,12 +13,13 @@ from divideropt.analysis import (
     tally,
 )
 from divideropt.campaign.beside import both_sides
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import build_problem, plan_runs, reference_of
+from divideropt.campaign.plan import build_problem, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.store import Store, TableSchema
 
@@ -38,7 +39,7 @@ class RunStatus:
         hypervolume: Of the feasible designs, None without a reference point.
         repeatable: Whether it comes out the same from scratch: no simulation timed out or crashed.
         failure: Why it was given up, None if it was not.
-        reason: Why it ended, in a word: budget, goals, stagnation or exhausted; None before it has.
+        reason: Why it ended, in a word: budget, goals, stagnation, exhausted or branched; None before it has.
         ending: Why it ended, in a sentence.
     """
 
@@ -110,9 +111,10 @@ def read_status(store: Store) -> StoreStatus:
     campaign = stored_campaign(store)
     problem = build_problem(campaign)
     schema, reference = TableSchema.of(problem), reference_of(campaign)
-    logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in plan_runs(campaign)}
+    planned = stored_runs(campaign, store)
+    logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in planned}
     runs = []
-    for run in plan_runs(campaign):
+    for run in planned:
         found, ending = logs[run.name], kept_ending(store, run, logs[run.name].evaluations)
         volumes = [] if reference is None else hypervolume_history(found.told, reference, [found.evaluations])
         runs.append(

@@ -7,6 +7,7 @@ import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import Tally, combined_front, marked, summarise, tally
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew
 from divideropt.campaign.dump import dump_campaign
@@ -14,7 +15,7 @@ from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import build_problem, dividers, plan_runs
+from divideropt.campaign.plan import build_problem, dividers
 from divideropt.campaign.progress import Counter, say
 from divideropt.campaign.reference import reference_problem
 from divideropt.campaign.worker import STOP_FILE, simulate_again, warm_up
@@ -177,7 +178,7 @@ def _fronts(
     store: Store, campaign: Campaign, problem: Problem, schema: TableSchema, words: TextIO
 ) -> dict[str, pa.Table]:
     """Read the fronts, the combined one first, whose points are wanted most; from the logs where one is damaged."""
-    names = ("combined", *(run.name for run in plan_runs(campaign)))
+    names = ("combined", *(run.name for run in stored_runs(campaign, store)))
     try:
         found = {name: store.read_front(name, schema) for name in names}
     except DamagedFileError as error:

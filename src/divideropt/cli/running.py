@@ -42,8 +42,11 @@ if TYPE_CHECKING:
 @click.option("--store", type=FILE, help="Folder of the results; results/NAME where not given.")
 @WORKERS
 @click.option("--fresh", is_flag=True, help="Begin anew; an existing store is moved aside, not deleted.")
+@click.option(
+    "--branch", is_flag=True, help="Where this processor would not repeat a log to the bit, go on as a new run."
+)
 @AS_JSON
-def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as_json: bool) -> None:
+def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, branch: bool, as_json: bool) -> None:
     """Run a campaign, or go on where its store stopped; write fronts and report.
 
     Runs that are done are not done again, so that the same call is safe whenever it is made. The last line says where
@@ -55,8 +58,9 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, as
 
     folder = store or Path("results") / asked.name
     again = shlex.join(["divideropt", "run", str(campaign), *([] if store is None else ["--store", str(store)])])
+    again += " --branch" if branch else ""
     try:
-        done = run_and_report(asked, folder, workers, sys.stderr, again, fresh=fresh)
+        done = run_and_report(asked, folder, workers, sys.stderr, again, fresh=fresh, branch=branch)
     except NoFeasibleDesignError:
         say(f"report: {Store(folder).report_path}")
         raise

@@ -1,6 +1,6 @@
 """A store to what its report says: frozen, in the platform's units, without a word of how it is drawn."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,11 +22,12 @@ from divideropt.analysis import (
 from divideropt.analysis.breaches import all_breaches
 from divideropt.analysis.failures import all_failures
 from divideropt.analysis.summary import Best
+from divideropt.campaign.branches import active_runs, stored_runs
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
-from divideropt.campaign.plan import Run, build_problem, plan_runs, reference_of
+from divideropt.campaign.plan import Run, build_problem, reference_of
 from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
@@ -100,7 +101,7 @@ class ReportData:
         notes: Sentences on the state of the store.
         provenance: What computed it, and how to repeat it.
         studies: The campaign's sensitivity studies in short.
-        sketches: Every design that the page can show, to scale; None for a model that offers no sketch.
+        sketches: What draws the designs to scale; None for a model that offers no sketch.
         sheets: Dimension sheets of designs whose response there is; None where there are none.
     """
 
@@ -170,14 +171,15 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     """
     campaign = stored_campaign(store)
     text = store.read_campaign()
-    problem, runs = build_problem(campaign), plan_runs(campaign)
+    problem, runs = build_problem(campaign), stored_runs(campaign, store)
     schema = TableSchema.of(problem)
     if logs is None:
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
-    shortest = _shortest(runs, logs)
+    active = active_runs(campaign, store)
+    shortest = _shortest(active, logs)
     facts = tuple(
         read_run(run, logs[run.name], problem.objectives, reference, endings[run.name], shortest.get(run.strategy, 0))
         for run in runs
@@ -202,7 +204,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         constraints_of(problem),
         facts,
         headline_of(front, best, objectives),
-        tracks_of(facts, objectives),
+        tracks_of([found for run, found in zip(runs, facts, strict=True) if run in active], objectives),
         failing_of(failures, breaches, variables, bounds_of(problem)),
         front,
         convergence(table),
@@ -210,7 +212,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _drawn(front),
         read_tried(logs),
         best,
-        _comparison(facts, logs, problem, reference),
+        _comparison(facts, logs, problem, reference, {run.name for run in active}),
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
         read_responses(problem, front, best),
@@ -224,13 +226,11 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
 
 
 def _with_dimensions(data: ReportData, problem: Problem) -> ReportData:
-    """Add the sketch of every design that the page can show, and sheets of those whose response it has."""
-    candidates = data.choosing.candidates if data.choosing else ()
-    shown = (*(data.front[i] for i in data.drawn), *data.best, *(candidate.design for candidate in candidates))
-    known = {design.design_id: design for design in shown}
+    """Add what draws the designs, and sheets of those whose response there is."""
+    known = {design.design_id: design for design in (*data.front, *data.best)}
     simulated = data.responses.designs if data.responses else ()
     sheets = read_sheets(problem, [known[response.name] for response in simulated if response.name in known])
-    return replace(data, sketches=read_sketches(problem, shown), sheets=sheets)
+    return replace(data, sketches=read_sketches(problem), sheets=sheets)
 
 
 def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int]:
@@ -287,10 +287,14 @@ def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
 
 
 def _comparison(
-    facts: Sequence[RunFacts], logs: Mapping[str, Summary], problem: Problem, reference: FloatArray | None
+    facts: Sequence[RunFacts],
+    logs: Mapping[str, Summary],
+    problem: Problem,
+    reference: FloatArray | None,
+    active: Collection[str],
 ) -> Comparison | None:
-    """Compare the strategies after as many evaluations as every run has."""
-    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts]
+    """Compare the strategies after as many evaluations as every run has; a run that branched by its last branch."""
+    contenders = [Contender(run.strategy, run.name, logs[run.name].told) for run in facts if run.name in active]
     if len({c.group for c in contenders if c.evaluations}) < 2:
         return None
     return compare(contenders, problem.objectives, reference)

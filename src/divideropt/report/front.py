@@ -25,7 +25,7 @@ VALIDITY = "within_validity"
 """The quantity by which a model says whether its assumptions hold."""
 
 
-_ID = re.compile(r"[a-z0-9_]{1,64}-[0-9]{1,20}/[0-9]{1,20}", re.ASCII)
+_ID = re.compile(r"[a-z0-9_]{1,64}-[0-9]{1,20}(?:-branch-[0-9]{1,20})?/[0-9]{1,20}", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,11 +61,12 @@ def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summa
 
 def render_report(data: ReportData) -> str:
     """Make the page; the same data give the same text."""
-    figures = _figures(data)
+    figures, selection = _figures(data), _selection(data)
     return render(
         "report.html.j2",
-        {"figures": figures, **_selection(data)},
+        {"figures": figures, **selection},
         data=data,
+        drawing=selection.get("sketch"),
         figures={figure["id"]: figure for figure in figures},
         projections=[figure for figure in figures if figure["id"].startswith("projection")],
         costs=[figure for figure in figures if figure["id"].startswith("cost")],
@@ -161,15 +162,17 @@ def _selection(data: ReportData) -> dict[str, Any]:
         "selected": _first(data),
         "name": data.name,
         "simulates": responses is not None,
-        **_dimensions(data, designs["ids"]),
+        **_dimensions(data, designs),
     }
 
 
-def _dimensions(data: ReportData, ids: list[str]) -> dict[str, Any]:
+def _dimensions(data: ReportData, designs: Mapping[str, Any]) -> dict[str, Any]:
     """What the page needs to draw its designs to scale, and to list their dimensions."""
     if data.sketches is None:
         return {}
-    found: dict[str, Any] = {"sketch": {**sketch_payload(data.sketches, ids), "defs": DEFS, "style": light_style()}}
+    variables = np.array(designs["values"][: len(data.variables)], dtype=np.float64).T
+    drawing = sketch_payload(data.sketches, variables)
+    found: dict[str, Any] = {"sketch": {**drawing, "defs": DEFS, "style": light_style()}}
     return found if data.sheets is None else {**found, "sheets": sheets_payload(data.sheets)}
 
 

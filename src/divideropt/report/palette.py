@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-"""In figures; the page exchanges each for its own `--series-N`, moved so that all stand out from the paper, light or
-dark, and are told apart with any colour vision (`tests/report/test_colours.py` says how far)."""
+"""In figures; the page exchanges each for its own `--series-N`, which stands out from the paper, light or dark, and
+is told from the others with any colour vision (`tests/report/test_colours.py` says how far)."""
 
 _SHAPES = ("circle", "diamond", "square", "cross", "x", "circle-open")  # those that plotly has in 3-D, too
 

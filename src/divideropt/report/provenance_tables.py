@@ -12,7 +12,7 @@ def versions_table(provenance: Provenance) -> Table:
     writers = provenance.writers[-MOST_WRITERS:]
     names = dict.fromkeys([*provenance.here, *(name for writer in writers for name in writer if name != "features")])
     computed = [Heading("computed with" if len(writers) == 1 else f"writer {i}") for i in _numbers(provenance)]
-    headings = (Heading("", numeric=False), *computed, Heading("this report"))
+    headings = (Heading("name", numeric=False), *computed, Heading("this report"))
     rows = [
         Row(
             "",

@@ -1,6 +1,6 @@
 """The designs of a report to scale: one drawing for all, and of each design the dimensions that vary."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,10 +8,10 @@ import numpy as np
 
 from divideropt.campaign.plan import dimensioned
 from divideropt.models.base import FloatArray
+from divideropt.models.dimensions import Dimensioned
 from divideropt.problem import Problem
 from divideropt.report.display import rounded
-from divideropt.report.front import Design
-from divideropt.report.sketch_layout import Drawing, lay_out
+from divideropt.report.sketch_layout import lay_out
 
 SAME = 1e-9
 """Deviation within which a dimension is the same in all designs, or in proportion to another."""
@@ -19,60 +19,50 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Sketches:
-    """A sketch of every design that a page can show.
+    """What draws any design of a campaign.
 
     Attributes:
-        drawing: Laid out for all of them.
-        rows: Each design's row in the columns, by its id.
-        columns: The dimensions that the drawing needs, by name, in their units.
+        model: Whose sketch.
+        fixed: Every parameter by name, as each design has it but for the variables.
+        names: The variables.
     """
 
-    drawing: Drawing
-    rows: Mapping[str, int]
-    columns: Mapping[str, FloatArray]
+    model: Dimensioned
+    fixed: Mapping[str, float]
+    names: tuple[str, ...]
+
+    def measured(self, variables: FloatArray) -> dict[str, FloatArray]:
+        """Return the dimensions of designs by name, a column each; `variables` has a row a design."""
+        parameters = list(self.model.parameters)
+        rows = np.empty((len(variables), len(parameters)))
+        rows[:] = [self.fixed[name] for name in parameters]
+        rows[:, [parameters.index(name) for name in self.names]] = variables
+        return dict(zip(self.model.dimensions, self.model.measured(rows).T, strict=True))
 
 
-def read_sketches(problem: Problem, designs: Iterable[Design]) -> Sketches | None:
-    """Measure designs for their sketches.
-
-    Args:
-        problem: What was optimised.
-        designs: Every design that the page can show.
-
-    Returns:
-        The sketches; None without a design, or where the model offers none.
-    """
+def read_sketches(problem: Problem) -> Sketches | None:
+    """Return what draws a campaign's designs; None where the model offers no sketch."""
     model = dimensioned(problem.model)
-    known = {design.design_id: design.variables for design in designs}
-    if model is None or not known:
-        return None
-    names = list(model.parameters)
-    parameters = np.empty((len(known), len(names)))
-    parameters[:] = [problem.fixed[name] for name in names]
-    parameters[:, [names.index(name) for name in problem.space.names]] = list(known.values())
-    columns = dict(zip(model.dimensions, model.measured(parameters).T, strict=True))
-    drawing = lay_out(model.sketch, model.dimensions, columns)
-    rows = {name: row for row, name in enumerate(known)}
-    return Sketches(drawing, rows, {name: columns[name] for name in drawing.names})
+    return None if model is None else Sketches(model, problem.fixed, problem.space.names)
 
 
-def sketch_payload(found: Sketches, ids: Iterable[str]) -> dict[str, Any]:
+def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any]:
     """Word the sketches for the page's script.
 
     Args:
-        found: The sketches.
-        ids: The page's designs, in its order.
+        found: What draws them.
+        variables: Those of the page's designs, in its order, shape (n, d) with n at least 1.
 
     Returns:
-        The drawing, its forms by what is stored, and a list a dimension that varies: a dimension that is constant is
-        a number, one in proportion to another is the other's place and a factor.
+        The drawing, laid out for all of them, and a list a dimension that varies: a dimension that is constant is a
+        number, one in proportion to another is the other's place and a factor.
     """
-    order = np.array([found.rows[name] for name in ids], dtype=np.intp)
-    drawing = found.drawing
+    columns = found.measured(variables)
+    drawing = lay_out(found.model.sketch, found.model.dimensions, columns)
     stored: list[Any] = []
     kept: dict[int, FloatArray] = {}
     for place, (name, (_, _, scale)) in enumerate(zip(drawing.names, drawing.labels, strict=True)):
-        column = found.columns[name][order] * scale  # in the unit shown, which has the fewest digits
+        column = columns[name] * scale  # in the unit shown, which has the fewest digits
         size = float(np.abs(column).max(initial=0.0))
         if float(np.ptp(column)) <= SAME * size:
             stored.append(float(f"{column[0]:.9g}"))
@@ -92,6 +82,7 @@ def sketch_payload(found: Sketches, ids: Iterable[str]) -> dict[str, Any]:
         "symbols": [symbol for symbol, _, _ in drawing.labels],
         "units": [unit for _, unit, _ in drawing.labels],
         "main": drawing.main,
+        "caption": drawing.caption,
     }
 
 

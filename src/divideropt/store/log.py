@@ -1,6 +1,6 @@
 """The evaluation log of one run: every evaluation in the order it was asked for, append-only."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -50,6 +50,17 @@ class RunLog:
         self._waiting += len(evaluations)
         if self._parts.due(self._waiting):
             self.flush()
+
+    def begin(self, batches: Sequence[Evaluations]) -> None:
+        """Publish the first batches of an empty log, as one part: all of them or none.
+
+        Raises:
+            DiskError: The disk refused; there is no log.
+        """
+        if batches:
+            self._parts.append(self._schema.log_rows(self._run, 0, 0, batches))
+            self._batches = len(batches)
+        self._parts.flush()
 
     def flush(self) -> None:
         """Publish what is pending as one part.

@@ -127,6 +127,10 @@ class Store:
         publish(self.report_path, lambda p: p.write_text(text, encoding="utf-8"))
         return self.report_path
 
+    def has_log(self, run: str) -> bool:
+        """Whether anything of a run is logged."""
+        return any((self.folder / "evaluations" / run).glob("part-*.parquet"))
+
     def log(self, run: str, schema: TableSchema) -> RunLog:
         """Open a run's log.
 

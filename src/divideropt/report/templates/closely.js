@@ -26,9 +26,10 @@ function tellResponse() {
   const figure = report.figures.find((other) => other.id === "response");
   const { lead } = selection;
   const others = [...selection.ids].filter((id) => id !== lead);
-  byId("selected-title").textContent =
-    lead === null ? "No design selected" : "Selected design: " + lead + (others.length ? " and " + counted(others.length, "other") : "");
+  const whose = lead + (others.length ? " and " + counted(others.length, "other") : "");
+  byId("selected-title").textContent = lead === null ? "No design selected" : "Selected design: " + whose;
   if (!figure) return undefined;
+  byId("response-title").textContent = lead === null ? "Step response" : "Step response of " + whose;
   const response = lead === null ? undefined : report.responses[lead];
   byId("unstored").hidden = lead === null || Boolean(response);
   const traces = figure.data.slice(-4);

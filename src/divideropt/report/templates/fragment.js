@@ -2,7 +2,7 @@
 // comes from there is from anybody: only the ids of designs that the page has are taken from it.
 
 const LONGEST_FRAGMENT = 200000; // characters; a front of 5,000 designs has some 25,000
-const RUN = /^[a-z0-9_]{1,64}-[0-9]{1,20}$/;
+const RUN = /^[a-z0-9_]{1,64}-[0-9]{1,20}(-branch-[0-9]{1,20})?$/;
 
 /** Read a fragment; null where it is no selection. */
 function readFragment(text) {

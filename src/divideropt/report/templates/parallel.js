@@ -2,7 +2,7 @@
 // over both. A value that is missing is a gap in its line.
 
 const AXIS_ROOM = 104; // least width of an axis with its heading [px]
-const FRAME = { top: 74, bottom: 24, side: 62, height: 440 }; // [px]
+const FRAME = { top: 84, bottom: 24, side: 62, height: 450 }; // [px]
 const MOST_HASTY = 1000; // lines that are drawn in each frame of a drag
 const NEAR = 8; // how far from a line a click may be [px]
 

@@ -21,9 +21,9 @@ function resizeIn(details) {
 /** Make tables smaller that are wider than the paper. */
 function fitToPaper() {
   for (const frame of document.querySelectorAll(".scroll")) {
-    const content = frame.firstElementChild;
-    content.style.zoom = "";
-    if (onPaper()) content.style.zoom = Math.min(1, frame.clientWidth / content.scrollWidth);
+    for (const content of frame.children) content.style.zoom = "";
+    const share = Math.min(1, frame.clientWidth / frame.scrollWidth);
+    if (onPaper()) for (const content of frame.children) content.style.zoom = share;
   }
 }
 
