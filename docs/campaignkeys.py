@@ -38,7 +38,10 @@ def campaign_keys() -> str:
 
 class _CampaignKeys(SphinxDirective):
     def run(self) -> list[nodes.Node]:
-        return self.parse_text_to_nodes(campaign_keys(), allow_section_headings=True)
+        found = self.parse_text_to_nodes(campaign_keys(), allow_section_headings=True)
+        for table in (table for node in found for table in node.findall(nodes.table)):
+            table["classes"].append("keys")
+        return found
 
 
 def _rows(section: type[Section], path: str) -> Iterator[str]:

@@ -10,7 +10,15 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 project = "divideropt"
 author = "the developers of divideropt"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click", "mathml", "campaignkeys"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_click",
+    "mathml",
+    "campaignkeys",
+    "darkpictures",
+]
 add_module_names = False
 default_role = "code"
 nitpicky = True

@@ -178,6 +178,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     schema = TableSchema.of(problem)
     if logs is None:
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
+    logs = {run.name: logs[run.name] for run in runs}  # in this order, whoever read them
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
