@@ -3,7 +3,7 @@
 import base64
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from typing import Any
 
@@ -15,7 +15,8 @@ AXE = files("axe_playwright_python").joinpath("axe.min.js").read_text("utf-8")
 """Evaluated by the browser's debugger, which no content security policy concerns: the page's own stays as it is."""
 
 FINDINGS = """async () => {
-    const { violations } = await axe.run(document, { resultTypes: ["violations"] });
+    const drawings = { exclude: [".main-svg"] };
+    const { violations } = await axe.run(drawings, { resultTypes: ["violations"] });
     return violations.flatMap(({ id, impact, nodes }) => nodes.map((node) => {
         const why = [...node.any, ...node.all, ...node.none].map((check) => check.message);
         return [impact, id, node.target.join(" "), ...why].join(" | ");
@@ -61,12 +62,12 @@ DIMENSIONLESS = re.compile(
 """Axes that need no unit: counts, shares, and what the tests' own models have."""
 
 
-def findings(found: Opened) -> list[str]:
+def findings(found: Opened, schemes: Sequence[str] = ("dark", "light")) -> list[str]:
     """What axe finds, of whatever weight, in either theme, with place and reason; what is folded away is opened."""
     found.page.evaluate("document.querySelectorAll('details').forEach(e => { e.open = true; })")
     found.page.evaluate(AXE)
     seen: list[str] = []
-    for scheme in ("dark", "light"):
+    for scheme in schemes:
         found.page.emulate_media(color_scheme=scheme)
         found.page.wait_for_function("document.getAnimations().length === 0")
         seen += [f"{scheme}: {finding}" for finding in found.page.evaluate(FINDINGS)]

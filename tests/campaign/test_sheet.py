@@ -96,7 +96,7 @@ def test_scenarios_and_uncertainty_are_those_of_the_campaign():
 def test_a_design_of_a_store_is_the_one_that_was_logged(tmp_path: Path):
     text = (
         ROBUST.replace("generations: 1", "generations: 2")
-        + "verification: {sample: 0}\nparallel: {backend: sequential}\n"
+        + "verification: {sample: 0}\noptimality: {points: 0}\nparallel: {backend: sequential}\n"
     )
     results = divideropt.run(text, tmp_path / "store")
     logged = pd.read_parquet(tmp_path / "store" / "evaluations" / "nsga2-1")

@@ -146,7 +146,8 @@ def test_verify_does_all_front_points_and_goes_on_after_a_kill_and_a_signal(fini
     again, first = results.loc[points.design_id].dynamic_error.values, points.dynamic_error.values
     share = abs(first - again) / np.maximum(abs(again), 0.01 * 1e-6)
     assert share == pytest.approx(points.deviation_dynamic_error.values, rel=1e-9)
-    last = done.stderr.splitlines()[-1]
+    last, where = done.stderr.splitlines()[-2:]
+    assert where == "report: store/report.html"
     assert last.startswith(f"verified: {len(points)} of {len(points)} front points, 0 deviate; largest deviation: ")
     assert f"dynamic_error {share.max():.1e}" in last
     assert "Verified: " in (store / "report.html").read_text(encoding="utf-8")

@@ -11,11 +11,12 @@ import pyarrow as pa
 import pytest
 
 from browsing import NO_WEBGL, quiet
-from divideropt.campaign.load import parse_campaign
+from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.runner import Runner
+from divideropt.campaign.study import Asked, run_study, study_of
 from divideropt.errors import StoreError
 from divideropt.models import Domain, Outcome, Parameter, Quantity, Verdict
-from divideropt.report import Curve, ResponseCurves, response_page, write_report
+from divideropt.report import Curve, ResponseCurves, read_study, response_page, write_report
 from divideropt.report.convergence import tracks_of
 from divideropt.report.data import read_report
 from divideropt.report.display import Shown
@@ -23,6 +24,10 @@ from divideropt.report.failing import Bound
 from divideropt.report.headline import headline_of
 from divideropt.report.page import render_report
 from divideropt.report.provenance import Provenance
+from divideropt.report.sensitivity_page import render_study
+from divideropt.report.sweeps_data import read_sweeps
+from divideropt.report.sweeps_page import render_sweeps
+from divideropt.store import Store
 
 ATTACKS = (
     "</script><script>window.hacked=1</script>",
@@ -114,6 +119,23 @@ def test_nothing_of_an_attack_runs_or_leaves(opened, attacking):
     quiet(found)
 
 
+@pytest.mark.parametrize("method", ["sobol", "morris", "oat"])
+def test_a_studys_page_stays_text_too(opened, attacking, method, tmp_path):
+    study = study_of(stored_campaign(attacking), Asked(method, (), {"sobol": 16, "morris": 20, "oat": 16}[method]))
+    store = Store(tmp_path / "study")
+    if method == "oat":
+        assert not Runner(study, store.folder, 1, io.StringIO()).sample()
+        text = render_sweeps(read_sweeps(store))
+    else:
+        run_study(study, store, 1, io.StringIO(), "again")
+        text = render_study(read_study(store))
+    found = opened(text)
+    found.page.evaluate("document.querySelectorAll('details').forEach(e => { e.open = true; })")
+    assert "window.hacked" in found.page.locator(".plot").first.text_content()
+    assert found.page.evaluate(LEFT_BEHIND) == CLEAN
+    quiet(found)
+
+
 def _hostile(axis, text):
     return replace(axis, name=text, words=text, symbol=text, description=text, shown=Shown(text, 1.0))
 
@@ -129,7 +151,6 @@ def test_names_that_no_campaign_can_have_stay_text_too(opened, data):
     )
     changed = replace(
         data,
-        sketches=None,  # whose own test has hostile names
         name=hostile,
         campaign=hostile,
         front=designs,

@@ -191,7 +191,6 @@ def test_hostile_text_stays_text(opened, data):
             replace(
                 data,
                 name=HOSTILE,
-                sketches=None,  # these have a test of their own
                 campaign=HOSTILE,
                 front=designs,
                 sheets=None,

@@ -317,6 +317,13 @@ def test_what_a_clock_ended_is_not_promised_to_come_again(data):
     assert "<b>complex-1</b>:" not in warning
 
 
+def test_a_branch_is_said_not_to_come_out_anew(data, text):
+    runs = (*data.runs, replace(data.runs[0], name="nsga2-1-branch-1"))
+    assert 'id="branched"' not in text
+    said = render_report(replace(data, runs=runs))
+    assert "nsga2-1-branch-1: a run that another machine or version went on with." in said
+
+
 # --- in a browser ---
 
 

@@ -17,7 +17,9 @@ from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_problem, dimensioned
 from divideropt.campaign.sheet import sheet
 from divideropt.models.dimensions import Dimension, Kind, Measure, Shape, Sketch, View, circle, the
+from divideropt.models.distributions import Uniform
 from divideropt.models.divider import PARAMETERS
+from divideropt.models.uncertain import Source, under_uncertainty
 from divideropt.report.data import ReportData, read_report
 from divideropt.report.page import render_report
 from divideropt.report.sheets import MOST_SIMULATED, read_sheets
@@ -257,9 +259,24 @@ def test_what_is_the_same_or_in_proportion_is_stored_once(data: ReportData) -> N
     assert by_name["groove depth"]["times"] == pytest.approx(math.sqrt(3.0) / 2.0)
 
 
+def test_a_design_without_a_variable_has_no_drawing(data: ReportData) -> None:
+    variables = variables_of(data)
+    variables[1, 0] = np.nan
+    columns = sketch_payload(data.sketches, variables)["columns"]
+    lists = [column for column in columns if isinstance(column, list)]
+    assert all(column[1] is None for column in lists)
+    assert all(value is not None for column in lists for row, value in enumerate(column) if row != 1)
+    assert sketch_payload(data.sketches, variables[1:2]) is None
+
+
 def test_sheets_cost_no_more_than_a_few_simulations(store: Store, data: ReportData) -> None:
     problem = build_problem(stored_campaign(store))
     many = [data.front[0]] * (MOST_SIMULATED // 4 + 10)
     assert len(read_sheets(problem, many[:3]).designs) == 1
     named = [replace(design, design_id=f"nsga2-1/{i}") for i, design in enumerate(many)]
     assert len(read_sheets(problem, named).designs) == MOST_SIMULATED // 4
+    sources = (Source("density", Uniform(800.0, 900.0)),)
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED // 8 - 1, 1))
+    assert len(read_sheets(uncertain, named).designs) == 2
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED, 1))
+    assert read_sheets(uncertain, named) is None

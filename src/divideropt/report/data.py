@@ -12,7 +12,6 @@ from divideropt.analysis import (
     Convergence,
     Summary,
     Verified,
-    combined_front,
     compare,
     convergence,
     marked,
@@ -25,10 +24,8 @@ from divideropt.analysis.summary import Best
 from divideropt.campaign.branches import active_runs, stored_runs
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import Run, build_problem, reference_of
-from divideropt.errors import DamagedFileError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Problem
 from divideropt.report.choosing import Choosing, choosing_of
@@ -52,6 +49,7 @@ from divideropt.report.scenarios import UnderScenarios, read_scenarios, worth_a_
 from divideropt.report.setting import setting_of
 from divideropt.report.sheets import Sheets, read_sheets
 from divideropt.report.sketches import Sketches, read_sketches
+from divideropt.report.standing import front_of, state_of
 from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
@@ -139,6 +137,11 @@ class ReportData:
         return tuple(dict.fromkeys(run.strategy for run in self.runs))
 
     @property
+    def branches(self) -> tuple[str, ...]:
+        """The runs that went on from another's log."""
+        return tuple(run.name for run in self.runs if "-branch-" in run.name)
+
+    @property
     def agreeing(self) -> int:
         """How many designs of the front came out the same when they were simulated again."""
         return sum(design.verified is Verified.YES for design in self.front)
@@ -175,6 +178,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     schema = TableSchema.of(problem)
     if logs is None:
         logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
+    logs = {run.name: logs[run.name] for run in runs}  # in this order, whoever read them
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)
     endings = {run.name: kept_ending(store, run, logs[run.name].evaluations) for run in runs}
@@ -184,7 +188,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         read_run(run, logs[run.name], problem.objectives, reference, endings[run.name], shortest.get(run.strategy, 0))
         for run in runs
     )
-    table, notes = _front(store, logs, problem, schema)
+    table, notes = front_of(store, logs, problem, schema)
     known = store.verification(schema).table()
     table = with_residuals({"combined": table}, campaign, problem, store)["combined"]
     table = marked(table, known, problem, schema, campaign.verification.share)
@@ -218,7 +222,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         read_responses(problem, front, best),
         _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
         cost,
-        _progress(facts, store) + notes + waiting,
+        state_of(facts, store) + notes + waiting,
         read_provenance(store, campaign),
         study_summary(store),
     )
@@ -246,44 +250,6 @@ def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int
 def _with_companion(under: UnderScenarios | None, cost: Cost | None) -> UnderScenarios | None:
     """Put the best of the companion's front beside those of the campaign's, scenario by scenario."""
     return under if under is None or cost is None else replace(under, designs=(*under.designs, *cost.under))
-
-
-def _front(
-    store: Store, logs: Mapping[str, Summary], problem: Problem, schema: TableSchema
-) -> tuple[pa.Table, tuple[str, ...]]:
-    """The combined front of what is logged, and what to say of the stored one if that is another.
-
-    The stored one is written when a campaign ends. While an extended one runs, it is older than the logs, and
-    would contradict every count beside it.
-    """
-    table = combined_front([logs[name].front for name in sorted(logs)], problem, schema)
-    try:
-        stored = store.read_front("combined", schema)
-    except DamagedFileError:
-        return table, (
-            "fronts/combined.parquet is damaged: the front below is that of all evaluations, and the next "
-            "`divideropt run` writes the file again.",
-        )
-    if stored is None:
-        return table, ("The campaign has not ended: the front below is that of the evaluations logged so far.",)
-    if stored["design_id"].to_pylist() != table["design_id"].to_pylist():
-        return table, (
-            "fronts/combined.parquet is older than the logs: the front below is that of all evaluations so far.",
-        )
-    return table, ()
-
-
-def _progress(runs: Sequence[RunFacts], store: Store) -> tuple[str, ...]:
-    waiting = [run.name for run in runs if run.evaluations == 0]
-    clocked = [run.name for run in runs if not run.repeatable]
-    notes = []
-    if waiting:
-        notes.append(f"Not begun yet: {', '.join(waiting)}.")
-    if clocked:
-        notes.append(f"Not repeatable from scratch, since a simulation timed out or crashed: {', '.join(clocked)}.")
-    failures = {run.name: Mishaps(store.status_folder, run.name).failure for run in runs}
-    notes += [f"Incomplete, given up: {name}: {reason}." for name, reason in failures.items() if reason]
-    return tuple(notes)
 
 
 def _comparison(

@@ -172,6 +172,8 @@ def _dimensions(data: ReportData, designs: Mapping[str, Any]) -> dict[str, Any]:
         return {}
     variables = np.array(designs["values"][: len(data.variables)], dtype=np.float64).T
     drawing = sketch_payload(data.sketches, variables)
+    if drawing is None:
+        return {}
     found: dict[str, Any] = {"sketch": {**drawing, "defs": DEFS, "style": light_style()}}
     return found if data.sheets is None else {**found, "sheets": sheets_payload(data.sheets)}
 

@@ -57,15 +57,16 @@ def read_sheets(problem: Problem, designs: Sequence[Design]) -> Sheets | None:
         designs: Those that may have a sheet, the first ones first.
 
     Returns:
-        The sheets, as many as `MOST_SIMULATED` allows; None where the model offers no dimensions.
+        The sheets, as many as `MOST_SIMULATED` allows; None where that is none, or the model offers no dimensions.
     """
     model = dimensioned(problem.model)
-    if model is None or not designs:
+    if model is None:
         return None
-    weight = (1 + problem.model.samples if isinstance(problem.model, Uncertain) else 1) * max(
-        1, len(dividers(problem.model))
-    )
+    samples = 1 + problem.model.samples if isinstance(problem.model, Uncertain) else 1
+    weight = samples * max(1, len(dividers(problem.model)))
     chosen = designs[: MOST_SIMULATED // (weight * (1 + len(STEPS)))]
+    if not chosen:
+        return None
     asked: list[dict[str, float]] = []
     places: dict[str, list[int | str]] = {}
     for design in chosen:

@@ -193,7 +193,8 @@ def _path(steps: Sequence[Step], form: Any, scale: float, names: Sequence[str]) 
             terms = [(names.index(name), factor * scale) for name, factor in step.radius.terms.items() if factor]
             radius = [step.radius.constant * scale, *(part for term in terms for part in term)]
             yield ["A", radius, int(step.clockwise), *point]
-    yield ["Z"]
+    if len(steps) > 2:  # a line that came back on itself would fill its own dashes
+        yield ["Z"]
 
 
 def _extent(view: View, columns: Mapping[str, FloatArray]) -> tuple[float, float, float, float]:

@@ -46,7 +46,7 @@ def read_sketches(problem: Problem) -> Sketches | None:
     return None if model is None else Sketches(model, problem.fixed, problem.space.names)
 
 
-def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any]:
+def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any] | None:
     """Word the sketches for the page's script.
 
     Args:
@@ -55,9 +55,13 @@ def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any]:
 
     Returns:
         The drawing, laid out for all of them, and a list a dimension that varies: a dimension that is constant is a
-        number, one in proportion to another is the other's place and a factor.
+        number, one in proportion to another is the other's place and a factor, and null is what is not known. None
+        where no design has all its variables.
     """
-    columns = found.measured(variables)
+    known = np.flatnonzero(np.isfinite(variables).all(axis=1))
+    if len(known) == 0:
+        return None
+    columns = found.measured(variables[known])
     drawing = lay_out(found.model.sketch, found.model.dimensions, columns)
     stored: list[Any] = []
     kept: dict[int, FloatArray] = {}
@@ -72,7 +76,10 @@ def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any]:
             stored.append({"of": of, "times": float(column[0] / kept[of][0])})
         else:
             kept[place] = column
-            stored.append([rounded(value) for value in column.tolist()])
+            values: list[float | None] = [None] * len(variables)
+            for row, value in zip(known.tolist(), column.tolist(), strict=True):
+                values[row] = rounded(value)
+            stored.append(values)
     return {
         "width": drawing.width,
         "height": drawing.height,

@@ -86,7 +86,8 @@ def _spool() -> View:
         *(Shape(circle(x, _ZERO, port), "edge", traced=True) for x in (-hole, hole)),
         *(Shape(polygon((x, _ZERO), (x, radius)), "hidden") for x in (-reach, reach)),
     )
-    measures = (
+    measures = (  # the longest first: labels lie over the lines before them
+        Measure("spool_length", (-end, stem), (end, stem), "below", 3),
         Measure("spool_diameter", (-outer, -radius), (-outer, radius), "left"),
         Measure("stem_diameter", (end, -stem), (end, stem), "right"),
         Measure("port_opening", (-hole - port, _ZERO), (-face, -radius), "above"),
@@ -95,7 +96,6 @@ def _spool() -> View:
         Measure("stop_position", (outer, radius), (reach, radius), "below"),
         Measure("end_clearance", (reach, radius), (cap, radius), "below", 2),
         Measure("seal_length", (cap, stem), (tip, stem), "above"),
-        Measure("spool_length", (-end, stem), (end, stem), "below", 3),
     )
     chamber = (radius + neck) * -0.5
     words = (

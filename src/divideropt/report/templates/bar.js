@@ -26,12 +26,13 @@ function tellBar() {
 // --- files ---
 
 const csvCell = (text) => (/[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
+const inert = (name) => (/^[=+\-@\t\r]/.test(name) ? "'" + name : name); // spreadsheets take such a heading for a formula
 const valueOf = (row, i) => report.designs.values[i][row];
 
 /** A row a design, in the platform's units: variables, and if asked for what is minimised, `|name|` for a magnitude. */
 function csvOf(rows, withObjectives) {
   const shownFields = [...fields.keys()].slice(0, withObjectives ? fields.length : firstObjective);
-  const heading = shownFields.map((i) => (fields[i].magnitude ? "|" + fields[i].name + "|" : fields[i].name));
+  const heading = shownFields.map((i) => inert(fields[i].magnitude ? "|" + fields[i].name + "|" : fields[i].name));
   const lines = rows.map((row) => [ids[row], ...shownFields.map((i) => String(valueOf(row, i) ?? ""))]);
   return [["design_id", ...heading], ...lines].map((line) => line.map(csvCell).join(",") + "\n").join("");
 }

@@ -103,16 +103,16 @@ function tellSketch() {
   const { lead } = selection;
   const group = byId("sketch-drawn");
   const others = [...selection.ids].filter((id) => id !== lead);
-  const traced = others.slice(0, MOST_TRACED);
+  const traced = others.filter((id) => !dimensionsOf(rowOf.get(id)).includes(null)).slice(0, MOST_TRACED);
   byId("sketched-others").hidden = others.length === 0;
   byId("sketched-others").textContent = "Thin lines: " + (traced.length < others.length ? "the first " + traced.length + " of " : "the outlines of ") + counted(others.length, "other selected design") + ".";
-  if (lead === null) {
-    byId("sketch-title").textContent = "No design selected";
+  const values = lead === null ? [null] : dimensionsOf(rowOf.get(lead));
+  if (values.includes(null)) {
+    byId("sketch-title").textContent = lead === null ? "No design selected" : "Of " + lead + " not every dimension is known";
     byId("sketch-words").textContent = "";
     group.replaceChildren();
     return;
   }
-  const values = dimensionsOf(rowOf.get(lead));
   byId("sketch-title").textContent = "Design " + lead + ", drawn to scale";
   byId("sketch-words").textContent = report.sketch.main.map((i) => report.sketch.names[i] + " " + measureText(i, values)).join(", ");
   const outlines = report.sketch.items.filter((item) => item.traced);
