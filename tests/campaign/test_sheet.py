@@ -111,6 +111,8 @@ def test_a_design_of_a_store_is_the_one_that_was_logged(tmp_path: Path):
     assert said.write(tmp_path / "sheet.svg").read_text("utf-8").startswith("<svg ")
     assert list(pd.read_csv(said.write(tmp_path / "sheet.csv"))["name"]) == list(said.table["name"])
     assert "spool diameter" in str(said)
+    with pytest.raises(UsageError, match="has 0 evaluations of a run nsga2-1-branch-1; name one"):
+        sheet(tmp_path / "store", "nsga2-1-branch-1/6")
     for wrong in ("nsga2-1/900", "nsga2-2/0", "nonsense", "../nsga2-1/1"):
         with pytest.raises(UsageError, match=r"nsga2-|no design's id"):
             sheet(tmp_path / "store", wrong)
@@ -140,4 +142,16 @@ def test_a_failing_design_has_a_sheet_that_says_so():
     assert not found.rounded.verdict.ok or not found.rounded.feasible
     data = sheet_data(found)
     assert data["rounded_dimensions"] == list(found.names)
-    assert sheet_table(found)["rounded"].tolist()[-3] == str(found.rounded.verdict.outcome)
+    table = sheet_table(found).set_index("name")
+    assert table["rounded"]["outcome"] == str(found.rounded.verdict.outcome)
+
+
+def test_a_sheet_says_where_the_model_no_longer_vouches_for_the_rounded_design():
+    settings = ["spool_radius=13.463 mm", "groove_width=1.0305 mm", "total_pressure_drop=6.4807 MPa"]
+    settings += ["fixed_drop_ratio=0.88741", "centred_opening=0.25758", "radial_clearance=3 um"]
+    finer, coarser = (sheet(None, settings=settings, step=step) for step in ("0.1 mm", "0.05 mm"))
+    assert finer.exact.valid
+    assert finer.rounded.valid
+    assert not coarser.rounded.valid
+    assert sheet_data(coarser)["rounded"]["within_validity"] is False
+    assert sheet_table(coarser).set_index("name")["rounded"]["within_validity"] == "no"

@@ -12,7 +12,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 import numpy as np
 
 from divideropt.models import Verdict
-from divideropt.models.base import FloatArray
+from divideropt.models.base import VALIDITY, FloatArray
 from divideropt.models.dimensions import Dimensioned
 from divideropt.problem import Evaluations, Problem, simulate
 from divideropt.problem.criteria import Values
@@ -30,6 +30,7 @@ class Judged:
         verdict: How the simulation ended.
         feasible: Whether it ended well and every constraint is met.
         met: Whether each objective's goal is met, None where it has none.
+        valid: Whether the model vouches for it (`within_validity`), None where it does not say.
     """
 
     parameters: Mapping[str, float]
@@ -39,6 +40,7 @@ class Judged:
     verdict: Verdict
     feasible: bool
     met: tuple[bool | None, ...]
+    valid: bool | None
 
 
 def rounded_names(problem: Problem, model: Dimensioned) -> tuple[str, ...]:
@@ -98,6 +100,7 @@ def judge(problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, f
     objectives = Values(known, [o.quantity for o in problem.objectives]).of(quantities)
     constraints = Values(known, [c.quantity for c in problem.constraints]).of(quantities)
     dimensions = model.measured(rows)
+    valid = quantities[:, known.index(VALIDITY)].tolist() if VALIDITY in known else [np.nan] * len(rows)
     return [
         Judged(
             designs[i],
@@ -110,6 +113,7 @@ def judge(problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, f
                 None if o.goal is None else bool(value <= o.goal)
                 for o, value in zip(problem.objectives, objectives[i], strict=True)
             ),
+            None if np.isnan(valid[i]) else bool(valid[i]),
         )
         for i in range(len(designs))
     ]

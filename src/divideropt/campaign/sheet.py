@@ -15,12 +15,13 @@ from divideropt.campaign.rounding import Judged, judge, rounded_design, rounded_
 from divideropt.campaign.sections import show
 from divideropt.campaign.simulate import read_settings
 from divideropt.errors import UsageError
+from divideropt.models.base import VALIDITY
 from divideropt.models.dimensions import Dimensioned, Kind
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 from divideropt.units import parse_measure
 
-_ID = re.compile(r"([a-z0-9_]{1,64}-[0-9]{1,20})/([0-9]{1,18})", re.ASCII)
+_ID = re.compile(r"([a-z0-9_]{1,64}-[0-9]{1,20}(?:-branch-[0-9]{1,20})?)/([0-9]{1,18})", re.ASCII)
 
 UNIT = "m"
 """Of a step."""
@@ -175,6 +176,7 @@ def sheet_data(found: Sheet) -> dict[str, Any]:
                 "text": column.verdict.text,
                 "feasible": column.feasible,
                 "goals_met": sum(met is True for met in column.met),
+                VALIDITY: column.valid,
             }
             for title, column in zip(titles, found.columns, strict=True)
         },
@@ -189,6 +191,8 @@ def _outcome(found: Sheet) -> Iterator[tuple[str, tuple[str, ...], str]]:
     goals = sum(met is not None for met in found.exact.met)
     if goals:
         yield "goals_met", tuple(f"{sum(met is True for met in c.met)} of {goals}" for c in columns), ""
+    if any(c.valid is not None for c in columns):
+        yield VALIDITY, tuple("" if c.valid is None else "yes" if c.valid else "no" for c in columns), ""
 
 
 def _treatment(found: Sheet, name: str) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 from divideropt.ode.base import FloatArray
 
 __all__ = [
+    "VALIDITY",
     "Domain",
     "FloatArray",
     "Model",
@@ -24,6 +25,10 @@ __all__ = [
     "Verdict",
     "Verifiable",
 ]
+
+
+VALIDITY = "within_validity"
+"""The quantity by which a model says whether its assumptions hold: 1 where they do, else 0."""
 
 
 @dataclass(frozen=True)

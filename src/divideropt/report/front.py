@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from divideropt.analysis import Kkt, Optimality, Verified
 from divideropt.errors import StoreError, printable
-from divideropt.models.base import FloatArray
+from divideropt.models.base import VALIDITY, FloatArray
 from divideropt.problem import AGGREGATES, DesignSpace, Problem
 from divideropt.store import TableSchema
 from divideropt.store.schema import deviation_of
@@ -19,10 +19,6 @@ NEAR_BOUND = 1e-3
 
 LEAST_SHARE = 0.05
 """Share of the front from which on it leans on a bound; fewer designs are the front's edge."""
-
-
-VALIDITY = "within_validity"
-"""The quantity by which a model says whether its assumptions hold."""
 
 
 _ID = re.compile(r"[a-z0-9_]{1,64}-[0-9]{1,20}(?:-branch-[0-9]{1,20})?/[0-9]{1,20}", re.ASCII)

@@ -115,6 +115,10 @@ def shown_lines(found: Sheet) -> list[ShownLine]:
     if goals:
         counts = tuple(f"{sum(met is True for met in c.met)} of {goals}" for c in found.columns)
         rows.append(ShownLine("outcome", "goals met", "", "", counts))
+    if any(column.valid is not None for column in found.columns):
+        vouched = tuple({True: "yes", False: "no", None: "–"}[column.valid] for column in found.columns)
+        note = "beyond what the model assumes" if found.columns[-1].valid is False else ""
+        rows.append(ShownLine("outcome", "within validity", "", "", vouched, note))
     return rows
 
 

@@ -120,6 +120,7 @@ def sheets_payload(found: Sheets) -> dict[str, Any]:
             return {"error": judged}
         numbers = zip(_values(found, judged), scales, constant, strict=True)
         said = {"outcome": str(judged.verdict.outcome), "text": judged.verdict.text, "feasible": judged.feasible}
+        said["valid"] = judged.valid
         return said | {"values": [_short(value * scale) for value, scale, same in numbers if not same]}
 
     return {

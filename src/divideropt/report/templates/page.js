@@ -19,6 +19,16 @@ function number(value) {
 
 const onPaper = () => window.matchMedia("print").matches;
 const crisp = () => Math.max(onPaper() ? 3 : 1, window.devicePixelRatio || 1); // pixels of a canvas for one of the page
+const divisor = (a, b) => (b ? divisor(b, a % b) : a);
+
+/** The same in an order that jumps through it by the golden ratio: what is drawn last is not all of the last strategy. */
+function mixed(list) {
+  const { length } = list;
+  let step = Math.max(1, Math.round(0.618 * length));
+  while (divisor(length, step) > 1) step += 1;
+  return list.map((_, i) => list[(i * step) % length]);
+}
+
 const counted = (count, word) => count + " " + word + (count === 1 ? "" : "s");
 
 function make(name, text, attributes) {

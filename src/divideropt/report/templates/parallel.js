@@ -76,7 +76,7 @@ function drawRows(context, rows, width) {
   const { series } = theme();
   context.globalAlpha = Math.max(0.12, Math.min(0.75, 8 / Math.sqrt(rows.length))); // many lines: their density shows
   context.lineWidth = width;
-  for (const row of rows) {
+  for (const row of mixed(rows)) {
     context.strokeStyle = series[report.designs.strategy[row] % series.length];
     drawLine(context, row);
   }

@@ -56,11 +56,12 @@ function fitted(canvas, frame, ratio) {
 
 function drawFront(context, traces, frame, ratio, isDrawn) {
   const [wide, high] = [frame.width / (frame.x[1] - frame.x[0]), frame.height / (frame.y[1] - frame.y[0])];
-  for (const { x, y, marker, customdata } of traces) {
+  const marks = traces.flatMap(({ x, y, marker, customdata }) => {
     const { canvas, half } = stamp(exchanged(marker, theme()), ratio);
-    for (let i = 0; i < x.length; i += 1) {
-      if (isDrawn(customdata[i])) context.drawImage(canvas, (x[i] - frame.x[0]) * wide - half, frame.height - (y[i] - frame.y[0]) * high - half, 2 * half, 2 * half);
-    }
+    return [...customdata.keys()].filter((i) => isDrawn(customdata[i])).map((i) => ({ canvas, half, x: x[i], y: y[i] }));
+  });
+  for (const { canvas, half, x, y } of mixed(marks)) {
+    context.drawImage(canvas, (x - frame.x[0]) * wide - half, frame.height - (y - frame.y[0]) * high - half, 2 * half, 2 * half);
   }
 }
 

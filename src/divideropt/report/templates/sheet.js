@@ -24,7 +24,7 @@ const chosenStep = () => Number(byId("step").value);
 function sheetSentence(columns) {
   const [exact, other] = [columns[0], columns[chosenStep()]];
   const step = report.sheets.steps[chosenStep() - 1];
-  const words = (column) => column.outcome + (column.text ? " (" + column.text + ")" : "") + ", " + (column.feasible ? "feasible" : "not feasible") + goalsMet(sheetValues(column));
+  const words = (column) => column.outcome + (column.text ? " (" + column.text + ")" : "") + ", " + (column.feasible ? "feasible" : "not feasible") + goalsMet(sheetValues(column)) + (column.valid === false ? ", beyond what the model assumes" : "");
   if (other.error) return "Rounded to " + step + " there is no such valve: " + other.error + ".";
   return "Rounded to " + step + ": " + words(other) + ". As it is: " + words(exact) + ".";
 }
