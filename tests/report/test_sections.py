@@ -285,7 +285,7 @@ def test_certificates_are_together(text):
 
 def test_it_says_what_wrote_the_store_and_how_to_repeat_it(store, data, text):
     (writer,) = store.writers()
-    assert writer == json.loads((store.folder / ".writers.json").read_text())[-1]
+    assert writer == json.loads((store.folder / ".writers.json").read_text())["writers"][-1]
     for word in (writer["processor"], writer["numpy"], data.provenance.here["platform"]):
         assert f'<td class="number">{word}</td>' in text
     assert f"python -m pip install numpy=={writer['numpy']} " in text
@@ -298,7 +298,7 @@ def test_several_writers_are_told_apart(store, data, tmp_path):
     copy = Store(tmp_path / "copy")
     shutil.copytree(store.folder, copy.folder)
     path = copy.folder / ".writers.json"
-    first = json.loads(path.read_text())[0]
+    first = json.loads(path.read_text())["writers"][0]
     path.write_text(json.dumps([first | {"numpy": "1.0"}, first]))
     text = render_report(read_report(copy))
     assert "2 sets of versions or processors" in text

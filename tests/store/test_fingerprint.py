@@ -8,7 +8,7 @@ from divideropt.store import Store, fingerprint
 
 
 def kept(folder):
-    return json.loads((folder / ".writers.json").read_text())
+    return list(Store(folder).writers())
 
 
 def test_the_same_machine_is_kept_once_and_says_nothing(tmp_path):
@@ -41,3 +41,17 @@ def test_a_damaged_record_is_said_and_begun_anew(tmp_path, content):
     (tmp_path / ".writers.json").write_bytes(content)
     assert "damaged" in Store(tmp_path).keep_fingerprint()
     assert kept(tmp_path) == [fingerprint.fingerprint()]
+
+
+def test_a_changed_record_is_believed_in_nothing(tmp_path):
+    Store(tmp_path).keep_fingerprint()
+    path = tmp_path / ".writers.json"
+    whole = path.read_bytes()
+    for place in range(0, len(whole), 7):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        assert kept(tmp_path) in ([], [fingerprint.fingerprint()])  # a bit of a blank changes nothing
+
+
+def test_a_record_of_before_the_digest_is_read(tmp_path):
+    (tmp_path / ".writers.json").write_text(json.dumps([{"python": "3.11.0"}]))
+    assert kept(tmp_path) == [{"python": "3.11.0"}]

@@ -1,5 +1,6 @@
 """What computes: versions and processor, kept with a store, because either may change the last bits of a number."""
 
+import hashlib
 import json
 import platform
 from collections.abc import Mapping
@@ -22,7 +23,7 @@ def keep_fingerprint(path: Path, allowed: Check) -> str | None:
     """Add this machine to a store's file of those that wrote to it, if it is not the last there.
 
     Args:
-        path: The file, a list in JSON, the latest last.
+        path: The file: a list in JSON, the latest last, with its digest.
         allowed: Asked before it is replaced.
 
     Returns:
@@ -34,7 +35,8 @@ def keep_fingerprint(path: Path, allowed: Check) -> str | None:
     before, now = _read(path), fingerprint()
     if before and before[-1] == now:
         return None
-    text = json.dumps([*(before or []), now], indent=1)
+    writers = [*(before or []), now]
+    text = json.dumps({"sha256": _digest(writers), "writers": writers}, indent=1)
     publish(path, lambda p: p.write_text(text, encoding="utf-8"), allowed)
     if before is None:
         return f"{path}: damaged, so nobody knows what wrote to this store before; {_JUDGE}"
@@ -68,8 +70,15 @@ def _read(path: Path) -> list[dict[str, str]] | None:
         return []
     except (OSError, ValueError):
         return None
+    if isinstance(found, dict):  # a list alone has no digest: so it was written before there was one
+        writers = found.get("writers")
+        found = writers if _digest(writers) == found.get("sha256") else None
     known = isinstance(found, list) and all(isinstance(entry, dict) for entry in found)
     return [{str(k): str(v) for k, v in entry.items()} for entry in found] if known else None
+
+
+def _digest(writers: object) -> str:
+    return hashlib.sha256(json.dumps(writers).encode("utf-8")).hexdigest()
 
 
 def _differences(before: Mapping[str, str], now: Mapping[str, str]) -> str:
