@@ -177,7 +177,7 @@ def said(data: str) -> object:
 
 
 def page(store: Path) -> str:
-    """The tables of the report's page but that of its provenance, which names no writers where the file is damaged."""
+    """The tables of the report's page but that of its provenance, which names nobody where that file is damaged."""
     text = (store / "report.html").read_text(encoding="utf-8").partition('<section id="provenance"')[0]
     return text[text.index("<table") : text.rindex("</table>")]
 
