@@ -118,9 +118,9 @@ def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str
 @click.command(
     cls=Taught,
     examples=(
-        "divideropt sheet results/divider nsga2-1/310 --step '0.1 mm'",
-        "divideropt sheet results/divider nsga2-1/310 --step '0.1 mm' --out sheet.svg    # drawn to scale",
-        "divideropt sheet campaigns/divider.yaml --set 'spool_radius=13.3 mm' --out sheet.csv",
+        "divideropt sheet results/my nsga2-1/310 --step '0.1 mm'",
+        "divideropt sheet results/my nsga2-1/310 --step '0.1 mm' --out sheet.svg    # drawn to scale",
+        "divideropt sheet my.yaml --set 'spool_radius=13.3 mm' --out sheet.csv",
     ),
 )
 @click.argument("source", type=FILE, required=False)
