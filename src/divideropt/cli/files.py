@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from divideropt.cli.output import AS_JSON, FILE, load, say, write_data, write_json
+from divideropt.cli.output import AS_JSON, FILE, load, plural, say, write_data, write_json
 from divideropt.cli.teaching import Taught
 from divideropt.errors import FileMistakes
 
@@ -68,7 +68,8 @@ def check(campaign: Path, as_json: bool) -> None:
         write_json({"right": True, **plan})
         return
     names = ", ".join(run["run"] for run in plan["runs"])
-    say(f"{campaign}: right. {len(plan['runs'])} runs, at most {plan['budget']} evaluations: {names}")
+    most = plural(plan["budget"], "evaluation")
+    say(f"{campaign}: right. {plural(len(plan['runs']), 'run')}, at most {most}: {names}")
 
 
 @click.command(
