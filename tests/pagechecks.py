@@ -32,7 +32,7 @@ AREAS = """(element) => {
 }"""
 """Where a figure draws its data: within the axes and on them, or where there are none all of it."""
 
-COLOURED = """async ([png, areas]) => {
+COLOURED = """async ([png, areas, least]) => {
     const image = new Image();
     image.src = "data:image/png;base64," + png;
     await image.decode();
@@ -40,17 +40,20 @@ COLOURED = """async ([png, areas]) => {
     [canvas.width, canvas.height] = [image.width, image.height];
     const context = canvas.getContext("2d");
     context.drawImage(image, 0, 0);
-    return areas.map(([x, y, width, height]) => {
+    return (areas || [[0, 0, image.width, image.height]]).map(([x, y, width, height]) => {
         const { data } = context.getImageData(x, y, Math.max(1, width), Math.max(1, height));
         let count = 0;
         for (let i = 0; i < data.length; i += 4) {
             const [red, green, blue] = data.subarray(i, i + 3);
-            count += Math.max(red, green, blue) - Math.min(red, green, blue) > 48;
+            count += Math.max(red, green, blue) - Math.min(red, green, blue) > least;
         }
         return count;
     });
 }"""
-"""How many pixels of each area have a colour: text, grids and paper are nearly grey in either theme, data are not."""
+"""How many pixels of each area, or of all, have a colour, their channels so far apart at the least."""
+
+COLOUR = 48
+"""Text, grids and paper are nearly grey in either theme, data are not."""
 
 FEWEST = 12
 """A small mark has some thirty pixels."""
@@ -86,7 +89,7 @@ def _coloured(page: Page, selector: str) -> dict[str, list[int]]:
         if not figure.is_visible():
             continue
         picture = base64.b64encode(figure.screenshot(animations="disabled")).decode()
-        found[str(figure.get_attribute("id"))] = page.evaluate(COLOURED, [picture, figure.evaluate(AREAS)])
+        found[str(figure.get_attribute("id"))] = page.evaluate(COLOURED, [picture, figure.evaluate(AREAS), COLOUR])
     return found
 
 

@@ -21,7 +21,7 @@ QUICKSTART = (ROOT / "campaigns" / "quickstart.yaml").read_text(encoding="utf-8"
 def campaign(snippet):
     """Put a snippet in the place of a campaign's own strategies."""
     lines = "".join(line[4:] for line in snippet.splitlines(keepends=True))
-    text, count = re.subn(r"^strategies:\n(?:  .*\n)+", lambda _: lines, QUICKSTART, flags=re.MULTILINE)
+    text, count = re.subn(r"^strategies:.*\n(?:  .*\n)+", lambda _: lines, QUICKSTART, flags=re.MULTILINE)
     assert count == 1
     return parse_campaign(text, "strategies.md")
 

@@ -224,7 +224,7 @@ def test_what_gets_into_the_page_all_the_same_can_do_nothing(opened):
 
 
 def test_a_design_that_is_not_named_as_ours_are_is_refused(attacking, monkeypatch):
-    import divideropt.report.data as module  # noqa: PLC0415
+    import divideropt.report.standing as module  # noqa: PLC0415
 
     def renamed(*arguments):
         front = _combined(*arguments)

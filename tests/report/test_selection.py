@@ -27,6 +27,7 @@ from divideropt.report.data import _drawn as drawn
 from divideropt.report.page import render_report
 from divideropt.report.tried import Tried
 from divideropt.store import Store
+from pagechecks import COLOURED
 
 CAMPAIGN = """
 name: pasted
@@ -54,23 +55,6 @@ CLOUD = """pair => {
     return data.filter((_, i) => i % 4 === 3 && data[i] > 0).length;
 }"""
 """How many pixels of a projection have something on them that was tried."""
-
-HUED = """async (png) => {
-    const image = new Image();
-    image.src = "data:image/png;base64," + png;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) {
-        if (Math.max(...data.slice(i, i + 3)) - Math.min(...data.slice(i, i + 3)) > 80) count += 1;
-    }
-    return count;
-}"""
-"""How many pixels of a picture are neither black, white nor grey."""
 
 INK = """([from, to]) => {
     const canvas = document.querySelector("#parallel canvas.all");
@@ -280,7 +264,7 @@ def test_a_projections_picture_has_its_points(report, tmp_path):
     path = tmp_path / waiting.value.suggested_filename
     waiting.value.save_as(path)
     assert path.name == "projection-0-1.png"
-    inked = report.page.evaluate(HUED, base64.b64encode(path.read_bytes()).decode())
+    (inked,) = report.page.evaluate(COLOURED, [base64.b64encode(path.read_bytes()).decode(), None, 80])
     assert inked > 100, "the strategies' colours are in it, which only the canvases have"
     quiet(report)
 
