@@ -8,7 +8,10 @@ from pathlib import Path
 
 import pytest
 
+import toy_model
 from divideropt.cli import main
+from divideropt.models import Quantity
+from toy_model import Toy
 
 
 @pytest.fixture(name="here")
@@ -134,3 +137,20 @@ def test_a_run_that_has_not_begun_has_no_empty_brackets(one, divideropt):
     said = divideropt("status results/one")
     assert "nsga2-1: 4 of 4 evaluations (4 ok)" in said
     assert "nsga2-2: 0 of 4 evaluations\n" in said
+
+
+def test_check_refuses_names_that_run_would_refuse(one, monkeypatch, capsys):
+    class Named(Toy):
+        def __init__(self):
+            super().__init__()
+            self.quantities["batch"] = Quantity("batch", "", "", "a name of the store's", 1.0)
+
+    monkeypatch.setattr(toy_model, "Named", Named, raising=False)
+    text = one.read_text(encoding="utf-8").replace('toy_model:Toy", options: {failing_below: -1}', 'toy_model:Named"')
+    one.write_text(text, encoding="utf-8")
+    for call in ("check one.yaml", "run one.yaml"):
+        monkeypatch.setattr(sys, "argv", ["divideropt", *call.split()])
+        with pytest.raises(SystemExit) as left:
+            main()
+        assert left.value.code == 2
+        assert "batch: the model gives this name" in capsys.readouterr().err

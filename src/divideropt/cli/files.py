@@ -61,8 +61,13 @@ def check(campaign: Path, as_json: bool) -> None:
             found = [{"line": m.line, "column": m.column, "message": m.message} for m in error.mistakes]
             write_json({"right": False, "mistakes": found})
         raise
-    from divideropt.campaign.plan import plan_data
+    from divideropt.campaign.divider import DividerConfig
+    from divideropt.campaign.plan import build_problem, plan_data
 
+    if not isinstance(asked.model, DividerConfig):
+        from divideropt.store import TableSchema
+
+        TableSchema.of(build_problem(asked))  # refuses names that `run` could not put into the tables
     plan = plan_data(asked)
     if as_json:
         write_json({"right": True, **plan})
