@@ -1,5 +1,6 @@
 """What commands share: how they read a campaign, and how they write data and say words."""
 
+import errno
 import os
 import stat
 import sys
@@ -32,9 +33,9 @@ class _File(click.Path):
         try:
             if stat.S_ISDIR(path.stat().st_mode):
                 (path / "campaign.yaml").stat()
-        except (FileNotFoundError, NotADirectoryError):
-            pass
         except OSError as error:
+            if error.errno not in (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP):  # not there, or the disk's failure
+                return path
             raise UsageError(f"{path}: {error.strerror}; name another path") from None
         return path
 
