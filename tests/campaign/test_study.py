@@ -90,6 +90,13 @@ def test_a_wrong_wish_is_refused_with_a_remedy(asked, words):
         study_of(default_campaign(), asked)
 
 
+def test_a_range_without_room_for_a_sweep_is_refused():
+    narrow = parse_campaign(TOY.replace("x1: [0, 1]", "x1: [0.5, 0.5000000000000002]"))
+    with pytest.raises(UsageError, match=r"^x1: between 0\.5 and 0\.5000000000000002 there are no 5 different"):
+        study_of(narrow, Asked("oat"))
+    assert study_of(narrow, Asked("oat", ("x2",))).variables == {"x2": (0.0, 1.0)}
+
+
 def test_what_a_scenario_sets_cannot_be_studied():
     text = (Path(__file__).parents[2] / "campaigns" / "duty.yaml").read_text(encoding="utf-8")
     campaign = parse_campaign(text)

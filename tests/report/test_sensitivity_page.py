@@ -160,6 +160,19 @@ def test_a_morris_study_is_drawn(opened: Callable[..., Opened], tmp_path):
     assert blank_figures(page.page) == []
 
 
+@pytest.mark.parametrize(("method", "count"), [("sobol", 64), ("morris", 10)])
+def test_a_study_in_which_all_failed_has_no_figure_without_marks(method, count, tmp_path):
+    lost = FAILING.replace("{lost: {}}", "{kept: {}}").replace("x1: [0, 1]", "x1: [0, 0.2]")
+    data = read_study(studied(lost, tmp_path / "study", method, count))
+    assert data.failures.share == 1.0
+    assert set(data.indices["treatment"]) == {"simulated"}
+    assert (data.objectives, data.others) == ((), ())
+    page = render_study(data)
+    assert 'id="effects"' not in page
+    assert 'id="bars"' not in page
+    assert page.count("<td>simulated</td>") == 1  # what the failed designs have all the same is in the table
+
+
 def test_the_text_has_the_numbers_and_the_house(valve):
     data = read_study(valve)
     text = study_text(data)

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO, cast
 
+import numpy as np
 from pydantic import ValidationError
 
 from divideropt.campaign.config import Campaign, OptimalityConfig
@@ -97,10 +98,13 @@ def study_of(campaign: Campaign, asked: Asked) -> Campaign:
     """
     config = campaign.sensitivity
     options = _options(config, asked)
+    ranges = _ranges(campaign, asked)
+    if asked.method == "oat":
+        _check_wide(ranges, options.points)
     study = _certain(campaign).model_copy(
         update={
             "nominal": False,
-            "variables": _ranges(campaign, asked),
+            "variables": ranges,
             "strategies": (StrategyPlan(asked.method, options, (config.seed,)),),
             "sensitivity": SensitivityConfig(),
             "verification": campaign.verification.model_copy(update={"sample": 0}),
@@ -163,6 +167,16 @@ def _options(config: SensitivityConfig, asked: Asked) -> Any:
     except ValidationError as error:
         (found, *_) = relay(error)
         raise UsageError(f"--samples {asked.count}: {cast(Any, found['type']).message()}") from None
+
+
+def _check_wide(ranges: Mapping[str, tuple[float, float]], points: int) -> None:
+    """Refuse a range in which a sweep would come to the same value twice, for want of numbers between its ends."""
+    for name, (lower, upper) in ranges.items():
+        if (np.diff(np.linspace(lower, upper, points)) <= 0.0).any():
+            raise UsageError(
+                f"{name}: between {lower!r} and {upper!r} there are no {points} different numbers for a sweep; widen "
+                f"its range, by --parameter '{name}=LOWER..UPPER' or in the campaign"
+            )
 
 
 def _ranges(campaign: Campaign, asked: Asked) -> Mapping[str, tuple[float, float]]:

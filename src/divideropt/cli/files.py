@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from divideropt.cli.output import AS_JSON, FILE, load, say, write_data, write_json
+from divideropt.cli.output import AS_JSON, FILE, load, plural, say, write_data, write_json
 from divideropt.cli.teaching import Taught
 from divideropt.errors import FileMistakes
 
@@ -61,14 +61,20 @@ def check(campaign: Path, as_json: bool) -> None:
             found = [{"line": m.line, "column": m.column, "message": m.message} for m in error.mistakes]
             write_json({"right": False, "mistakes": found})
         raise
-    from divideropt.campaign.plan import plan_data
+    from divideropt.campaign.divider import DividerConfig
+    from divideropt.campaign.plan import build_problem, plan_data
 
+    if not isinstance(asked.model, DividerConfig):
+        from divideropt.store import TableSchema
+
+        TableSchema.of(build_problem(asked))  # refuses names that `run` could not put into the tables
     plan = plan_data(asked)
     if as_json:
         write_json({"right": True, **plan})
         return
     names = ", ".join(run["run"] for run in plan["runs"])
-    say(f"{campaign}: right. {len(plan['runs'])} runs, at most {plan['budget']} evaluations: {names}")
+    most = plural(plan["budget"], "evaluation")
+    say(f"{campaign}: right. {plural(len(plan['runs']), 'run')}, at most {most}: {names}")
 
 
 @click.command(

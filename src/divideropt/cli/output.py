@@ -1,6 +1,8 @@
 """What commands share: how they read a campaign, and how they write data and say words."""
 
+import errno
 import os
+import stat
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -17,7 +19,28 @@ if TYPE_CHECKING:
 
 # ruff: noqa: PLC0415 (what takes time is imported where it is needed)
 
-FILE = click.Path(path_type=Path)
+
+class _File(click.Path):
+    """A path by which something can be looked up, whether or not it is there."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read it; what the system refuses is a mistake of the user's, and no later look need expect it.
+
+        Raises:
+            UsageError: A name is too long, or a folder on the way or at its end is not to be entered.
+        """
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        try:
+            if stat.S_ISDIR(path.stat().st_mode):
+                (path / "campaign.yaml").stat()
+        except OSError as error:
+            if error.errno not in (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP):  # not there, or the disk's failure
+                return path
+            raise UsageError(f"{path}: {error.strerror}; name another path") from None
+        return path
+
+
+FILE = _File(path_type=Path)
 
 AS_JSON = click.option("--json", "as_json", is_flag=True, help="As JSON on standard output.")
 
@@ -121,6 +144,11 @@ def write_data(text: str) -> None:
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise DiskError(f"standard output: {error.strerror}; nothing in a store was touched") from error
+
+
+def plural(count: int, word: str) -> str:
+    """Word a number of things: `1 design`, `2 designs`."""
+    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def say(words: str) -> None:

@@ -13,6 +13,7 @@ from divideropt.cli.output import (
     WORKERS,
     check_out,
     load,
+    plural,
     say,
     say_when_compiling,
     write_data,
@@ -66,13 +67,14 @@ def run(campaign: Path, store: Path | None, workers: int | None, fresh: bool, br
         raise
     if done.nothing_new:
         runs = len(done.outcomes.logs)
-        say(f"nothing to do: {runs} of {runs} runs are done; front, verification and KKT residuals are as before")
-    say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({done.outcomes.front.points} designs)")
+        words = "1 of 1 run is" if runs == 1 else f"{runs} of {runs} runs are"
+        say(f"nothing to do: {words} done; front, verification and KKT residuals are as before")
+    say(f"front:  {folder / 'fronts' / 'combined.parquet'} ({plural(done.outcomes.front.points, 'design')})")
     say(_counted(done.outcomes.front))
     say(_converged(done.outcomes.kkt))
     if done.companion is not None:
-        count = f"{done.companion.feasible} of {done.companion.points} designs of its front"
-        say(f"nominal: {count} are feasible in the whole campaign")
+        count = f"{done.companion.feasible} of {plural(done.companion.points, 'design')} of its front"
+        say(f"nominal: {count} {'is' if done.companion.points == 1 else 'are'} feasible in the whole campaign")
     say(f"report: {done.report}")
     if as_json:
         write_json({"store": str(folder), "report": str(done.report), **_status_data(Store(folder))})
@@ -169,8 +171,10 @@ def export(store: Path, kind: str, out: Path | None, as_json: bool) -> None:
     from divideropt.store import Store
 
     done = export_store(Store(store), kind, out)
-    fronts = ", ".join(f"{name} {count}" for name, count in done.fronts.items())
-    say(f"{done.evaluations} evaluations; designs on fronts: {fronts or 'none before the campaign has ended'}")
+    fronts = (
+        ", ".join(f"{name} {count}" for name, count in done.fronts.items()) or "none before the campaign has ended"
+    )
+    say(f"{plural(done.evaluations, 'evaluation')}; designs on fronts: {fronts}")
     say(f"tables: {done.folder}")
     if as_json:
         write_json({**dataclasses.asdict(done), "folder": str(done.folder)})
@@ -195,13 +199,15 @@ def _say_damage(found: "StoreStatus") -> None:
 def _status_lines(found: "StoreStatus") -> list[str]:
     """Word a status, that of the companion after that of its campaign."""
     verified = "" if found.front is None else f", {found.verified} of them verified, {found.deviating} deviating"
-    lines = [f"{found.campaign}: {_count(found.front)} designs on the combined front{verified}"]
+    lines = [f"{found.campaign}: {_count(found.front)} on the combined front{verified}"]
     lines += [] if found.kkt is None else [_converged(found.kkt)]
     for item in found.runs:
-        outcomes = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
+        ended = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
+        outcomes = f" ({ended})" if ended else ""
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
         volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
-        lines.append(f"{item.run}: {item.evaluations} of {item.budget} evaluations ({outcomes}){best}{volume}")
+        asked = plural(item.budget, "evaluation")
+        lines.append(f"{item.run}: {item.evaluations} of {asked}{outcomes}{best}{volume}")
         if item.ending is not None:
             lines.append(f"  ended: {item.ending}")
         if item.failure is not None:
@@ -219,13 +225,14 @@ def _nominal_line(found: "StoreStatus") -> str:
     if found.beside is None:
         return "nominal: the companion's front is not there yet; `divideropt run` goes on"
     known, points, feasible = found.beside.known, found.beside.points, found.beside.feasible
-    return f"nominal: {known} of {points} designs of its front simulated in the whole campaign, {feasible} feasible"
+    designs = plural(points, "design")
+    return f"nominal: {known} of {designs} of its front simulated in the whole campaign, {feasible} feasible"
 
 
 def _counted(count: "Tally") -> str:
     """Say how front points came out when they were simulated again."""
     largest = ", ".join(f"{name} {value:.1e}" for name, value in count.largest.items() if value is not None)
-    words = f"verified: {count.agree} of {count.points} front points, {count.deviate} deviate"
+    words = f"verified: {count.agree} of {plural(count.points, 'front point')}, {count.deviate} deviate"
     return f"{words}; largest deviation: {largest}" if largest else words
 
 
@@ -235,8 +242,8 @@ def _converged(kkt: "Convergence") -> str:
     if kkt.median is None:
         return f"KKT residual of 0 front points{others}"
     figures = f"median {kkt.median:.2g}, 95th percentile {kkt.high:.2g}"
-    return f"KKT residual of {kkt.computed} front points: {figures}{others}"
+    return f"KKT residual of {plural(kkt.computed, 'front point')}: {figures}{others}"
 
 
 def _count(number: int | None) -> str:
-    return "no" if number is None else str(number)
+    return "no designs" if number is None else plural(number, "design")

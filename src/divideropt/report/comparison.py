@@ -116,7 +116,7 @@ def _strategies(compared: Compared) -> str:
             row += ["–", "–"] if found is None else [number(volume) for volume in found]
         rows.append(row)
     rows = [list(column) for column in zip(*rows, strict=True)]
-    return f"After {comparison.evaluations} evaluations of each run: median (quartiles)\n" + _aligned(rows)
+    return f"After {_plural(comparison.evaluations, 'evaluation')} of each run: median (quartiles)\n" + _aligned(rows)
 
 
 def _tests(all_tests: Sequence[Ranking]) -> str:
@@ -138,7 +138,7 @@ def _choice(compared: Compared) -> str:
     axes = _axes(compared)
     goals = choice.goals
     part = "" if compared.designs == len(front) else f" that are within the reference point, of {compared.designs}"
-    lines = [f"Choosing among {len(front)} designs of the best known front{part}"]
+    lines = [f"Choosing among {_plural(len(front), 'design')} of the best known front{part}"]
     if goals.nearest is not None:
         lines.append(_goal_words(compared))
     if not choice.knees:
@@ -231,6 +231,10 @@ def _nearest(compared: Compared) -> dict[str, Any]:
     goals = compared.choice.goals
     names = [objective.quantity.name for objective in compared.problem.objectives]
     return _design(compared, goals.nearest or 0) | {"lacks": dict(zip(names, goals.lacks.tolist(), strict=True))}
+
+
+def _plural(count: int, word: str) -> str:
+    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def _finite(values: Any) -> dict[str, Any]:

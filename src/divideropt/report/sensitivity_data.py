@@ -25,6 +25,7 @@ from divideropt.store.files import publish
 INDICES = "indices.parquet"
 """The table of indices, in the study's store."""
 
+_FIRST = (str(Treatment.ALL), str(Treatment.WORKING))
 _UNITS = {"morris": ("trajectory", "trajectories"), "sobol": ("block", "blocks")}
 
 
@@ -71,25 +72,29 @@ class StudyData:
 
     @property
     def objectives(self) -> tuple[str, ...]:
-        """Names of the objectives that have numbers."""
-        asked = dict.fromkeys(o.quantity.name for o in self.problem.objectives)
-        return tuple(name for name in asked if name in set(self.indices["quantity"]))
+        """Names of the objectives that have numbers under the treatment to look at first."""
+        asked, shown = dict.fromkeys(o.quantity.name for o in self.problem.objectives), self._shown()
+        return tuple(name for name in asked if name in shown)
 
     @property
     def others(self) -> tuple[str, ...]:
-        """Names of the other quantities that have numbers; first whether the outcome is ok."""
-        return tuple(name for name in dict.fromkeys(self.indices["quantity"]) if name not in self.objectives)
+        """Names of the other quantities that have numbers so; first whether the outcome is ok."""
+        return tuple(name for name in self._shown() if name not in self.objectives)
 
     def first(self, quantity: str, kind: str) -> pd.DataFrame:
         """The numbers of all the sample under the treatment to look at first, by variable."""
         return first_of(self.indices, quantity, kind)
+
+    def _shown(self) -> dict[str, None]:
+        first = self.indices["treatment"].isin(_FIRST) & (self.indices["samples"] == self.indices["samples"].max())
+        return dict.fromkeys(self.indices["quantity"][first])
 
 
 def first_of(indices: pd.DataFrame, quantity: str, kind: str) -> pd.DataFrame:
     """The numbers of a table of the whole sample under the treatment to look at first, indexed by variable."""
     chosen = (indices["quantity"] == quantity) & (indices["kind"] == kind)
     chosen &= indices["samples"] == indices["samples"].max()
-    chosen &= indices["treatment"].isin([str(Treatment.ALL), str(Treatment.WORKING)])
+    chosen &= indices["treatment"].isin(_FIRST)
     found: pd.DataFrame = indices[chosen].set_index("variable")
     return found
 

@@ -142,7 +142,8 @@ def _treatments(data: StudyData) -> list[dict[str, Any]]:
     """Of each objective, the outcome and each constraint: the main numbers under every treatment."""
     table = data.indices[data.indices["samples"] == data.indices["samples"].max()]
     kind = "ST" if data.method == "sobol" else "mu_star"
-    asked = [*data.objectives, *(c.quantity.name for c in data.problem.constraints)]
+    asked = [objective.quantity.name for objective in data.problem.objectives]
+    asked += [constraint.quantity.name for constraint in data.problem.constraints]
     found = []
     for quantity in dict.fromkeys(asked):
         mine = table[(table["quantity"] == quantity) & (table["kind"] == kind)]

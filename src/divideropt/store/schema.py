@@ -105,6 +105,7 @@ class TableSchema:
             number = _number(q.name, q.unit, q.symbol, q.description, role, signed=q.signed)
             fields.append(number.with_type(pa.bool_()) if q.logical else number)
         fields += [_text("outcome", Role.OUTCOME), _text("outcome_text", Role.OUTCOME)]
+        _check_names([field.name for field in fields])  # before anything looks a column up by its name
         arrow = pa.schema(fields, metadata={_VERSION_KEY: str(SCHEMA_VERSION)})
         objectives = tuple(o.quantity.name for o in problem.objectives)
         schema = cls(arrow, problem.space.names, tuple(problem.model.quantities), objectives)
