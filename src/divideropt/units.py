@@ -37,8 +37,9 @@ _BASES = {
 }
 """Units as powers of ten of SI units, and their exponents of metre, kilogram and second."""
 
-_KNOWN = {tens + name: (_TENS[tens] + ten, kind) for name, (ten, kind) in _BASES.items() for tens in _TENS}
-_KNOWN["%"] = (-2, (0, 0, 0))
+_KNOWN = {tens + name: (_TENS[tens] + ten, 0, kind) for name, (ten, kind) in _BASES.items() for tens in _TENS}
+_KNOWN |= {"%": (-2, 0, (0, 0, 0)), "min": (0, 1, (0, 0, 1))}
+"""The same with prefixes; between the two, how many sixties there are in it."""
 
 _MEASURE = re.compile(rf"\s*({NUMBER})\s*({UNIT})?\s*", re.ASCII)
 _PLAIN = re.compile(rf"\s*{NUMBER}\s*", re.ASCII)
@@ -112,8 +113,8 @@ def _wanted(unit: str) -> str:
 def _factor(given: str, wanted: str) -> Decimal:
     """Return what to multiply a number in `given` by to have it in `wanted`; decimal, so that 3 um is 3e-6."""
     ours, theirs = _ten(given), _ten(wanted)
-    if ours is not None and theirs is not None and ours[1] == theirs[1]:
-        return Decimal(1).scaleb(ours[0] - theirs[0])
+    if ours is not None and theirs is not None and ours[2] == theirs[2]:
+        return Decimal(1).scaleb(ours[0] - theirs[0]) * Decimal(60) ** (ours[1] - theirs[1])
     import pint  # noqa: PLC0415 (late: it takes half a second, and few units need it)
 
     registry = _registry()
@@ -125,17 +126,18 @@ def _factor(given: str, wanted: str) -> Decimal:
         raise ValueError(f"the unit {given!r} is of another kind; here {_wanted(wanted)}") from None
 
 
-def _ten(unit: str) -> tuple[int, list[int]] | None:
-    """Read a unit that is a power of ten of SI units: the power, and its dimensions; None for any other."""
-    power, dimensions = 0, [0, 0, 0]
+def _ten(unit: str) -> tuple[int, int, list[int]] | None:
+    """Read a unit of tens and sixties of SI units: the powers of both, and its dimensions; None for any other."""
+    power, sixties, dimensions = 0, 0, [0, 0, 0]
     for operator, name, exponent in _PART.findall(unit.removeprefix("1")):
         if name not in _KNOWN:
             return None
         times = int(exponent or 1) * (-1 if operator == "/" else 1)
-        ten, kind = _KNOWN[name]
+        ten, sixty, kind = _KNOWN[name]
         power += times * ten
+        sixties += times * sixty
         dimensions = [d + times * k for d, k in zip(dimensions, kind, strict=True)]
-    return power, dimensions
+    return power, sixties, dimensions
 
 
 @cache
