@@ -163,7 +163,21 @@ def test_a_logarithmic_or_offset_unit_is_a_value_error(text: str, unit: str) -> 
         parse_measure(text, unit)
 
 
-PRODUCTS = ["m^3/s", "mL/ms", "1/s", "kg/m^3", "g/cm^3", "mm^2/s", "N/m", "N*s/m", "1/ms^2", "m^-1*bar", "L/min", "1/min", "mL*min^-2"]
+PRODUCTS = [
+    "m^3/s",
+    "mL/ms",
+    "1/s",
+    "kg/m^3",
+    "g/cm^3",
+    "mm^2/s",
+    "N/m",
+    "N*s/m",
+    "1/ms^2",
+    "m^-1*bar",
+    "L/min",
+    "1/min",
+    "mL*min^-2",
+]
 
 
 @pytest.mark.parametrize("wanted", ["m", "Pa", "m^3", "m^3/s", "1/s", "kg", "kg/m^3", "m^2/s", "s", "N", "%", ""])

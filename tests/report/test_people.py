@@ -19,6 +19,10 @@ HIDE = "document.querySelectorAll(':is(#projection-0-1, #parallel) canvas').forE
 
 MISLEAD = "name => document.querySelector('label:has(+ #choice)').setAttribute('for', name)"
 
+OWN = """['response', 'projection-0-1'].map(id => document.getElementById(id))
+    .map(e => [Math.round(e.querySelector('.main-svg').getAttribute('width')), e.clientWidth])"""
+"""Of two figures, as wide as they are drawn, and as wide as their places."""
+
 BEYOND = """() => [...document.querySelectorAll("main, main *")].filter((e) => {
     const { right, width } = e.getBoundingClientRect();
     return width > 0 && right > document.documentElement.clientWidth + 1
@@ -183,6 +187,21 @@ def test_the_print_has_as_many_pages_as_it_needs(page, tmp_path: Path):
     page.pdf(path=path, format="A4", print_background=True)
     pages = len(re.findall(rb"/Type\s*/Page\b", path.read_bytes()))
     assert math.ceil(height / 2200) <= pages <= math.ceil(height / 700)
+
+
+def test_figures_have_the_papers_width_when_printed_and_the_screens_again(page, tmp_path: Path):
+    page.emulate_media(media="null")
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.evaluate(
+        f"matchMedia('print').addEventListener('change', (e) => {{ if (e.matches) window.printed = {OWN}; }})"
+    )
+    page.pdf(path=tmp_path / "report.pdf", format="A4")
+    printed = page.evaluate("window.printed")
+    assert printed
+    assert all(width == own for width, own in printed)
+    page.wait_for_timeout(500)  # plotly waits a tenth of a second
+    assert all(width == own for width, own in page.evaluate(OWN))
+    assert page.evaluate(OWN)[0][1] > printed[0][1]
 
 
 def test_a_number_is_written_alike_by_the_page_and_its_script(opened, data):

@@ -40,6 +40,7 @@ function coloured(figure) {
       layout.scene[key] = { ...layout.scene[key], ...axis, gridcolor: t.line, showbackground: false, zeroline: false };
     }
   }
+  if (onPaper()) layout.width = byId(figure.id).clientWidth; // plotly would ask later, when the page has been printed
   for (const shape of layout.shapes || []) shape.line.color = t.quiet;
   const data = figure.data.map((trace) => {
     const copy = { ...trace };

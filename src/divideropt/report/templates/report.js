@@ -13,9 +13,9 @@ function showQuantity(name) { // one quantity over every parameter of a study
   return redraw(figure);
 }
 
-/** What was folded away when it was drawn had no width. */
-function resizeIn(details) {
-  for (const element of details.querySelectorAll(".plot")) if (shown.has(element.id)) Plotly.Plots.resize(element);
+/** What was folded away when it was drawn had no width; what was printed has the paper's. */
+function resizeIn(part) {
+  for (const element of part.querySelectorAll(".plot")) if (shown.has(element.id) && element.clientWidth) Plotly.Plots.resize(element);
 }
 
 /** Make tables smaller that are wider than the paper. */
@@ -82,6 +82,7 @@ async function begin() {
         fitToPaper();
       }
       shown.forEach(redraw);
+      if (media === "print" && !onPaper()) resizeIn(document);
       if (media === "print") pictures.filter(() => able).forEach(see);
       if (report.selected) layOut();
     });
