@@ -204,6 +204,18 @@ def test_figures_have_the_papers_width_when_printed_and_the_screens_again(page, 
     assert page.evaluate(OWN)[0][1] > printed[0][1]
 
 
+def test_figures_follow_paper_of_another_width(page):
+    page.emulate_media(media="print")
+    page.wait_for_timeout(500)
+    wide = page.evaluate(OWN)
+    page.set_viewport_size({"width": 703, "height": 1000})
+    page.wait_for_timeout(500)
+    narrow = page.evaluate(OWN)
+    assert all(width == own for width, own in narrow)
+    assert narrow[0][1] < wide[0][1]
+    assert blank_figures(page) == []
+
+
 def test_a_number_is_written_alike_by_the_page_and_its_script(opened, data):
     sizes = (1.23456e10, 9.87654e12, 2.5e1, 0.0, -3.2e9)
     front = [replace(d, objectives=(*d.objectives[:2], size)) for d, size in zip(data.front, sizes, strict=False)]

@@ -87,6 +87,11 @@ async function begin() {
       if (report.selected) layOut();
     });
   }
+  window.addEventListener("resize", () => { // plotly follows no change where a figure has a width of its own
+    if (!onPaper()) return;
+    fitToPaper();
+    shown.forEach(redraw);
+  });
   for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => resizeIn(details));
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
   if (able) for (const figure of pictures) whenQuiet(() => see(figure)); // for who scrolls quickly, and for pictures of the page
