@@ -102,7 +102,6 @@ def test_another_row_changes_the_response(report, data):
     before = report.lines()
     report.page.locator("#front-table tbody tr").nth(3).click()
     expect(report.page.locator("#selected-title")).to_contain_text(_id(data, 3))
-    report.page.wait_for_timeout(200)
     assert len(report.lines()) == len(before)
     assert report.lines() != before
     assert report.page.locator("#choice").input_value() == _id(data, 3)

@@ -54,6 +54,7 @@ def page(report: Opened) -> Page:
     )
     report.page.keyboard.press("Escape")
     expect(report.page.locator("#let-go")).to_be_hidden()
+    report.settled()
     return report.page
 
 
@@ -61,6 +62,7 @@ def test_axe_finds_nothing_but_what_is_wrong(report, page):
     for row, keys in ((1, []), (3, ["Control"])):
         page.locator("#front-table tbody tr").nth(row).click(modifiers=keys)
     expect(page.locator("#compared tbody tr")).to_have_count(2)
+    report.settled()
     assert findings(report) == []
     quiet(report)
     page.evaluate(MISLEAD, "nothing")
@@ -99,6 +101,7 @@ def test_keys_alone_lead_from_the_pages_start_to_a_design_and_its_response(repor
     page.keyboard.press("Enter")
     chosen = data.front[2].design_id
     expect(page.locator("#announced[role=status]")).to_contain_text(chosen)
+    report.settled()
     assert page.evaluate("document.activeElement.getAttribute('data-id')") == chosen
     assert page.evaluate("document.activeElement.getAttribute('aria-selected')") == "true"
     assert chosen in report.title()
@@ -220,11 +223,13 @@ def test_a_number_is_written_alike_by_the_page_and_its_script(opened, data):
     sizes = (1.23456e10, 9.87654e12, 2.5e1, 0.0, -3.2e9)
     front = [replace(d, objectives=(*d.objectives[:2], size)) for d, size in zip(data.front, sizes, strict=False)]
     some = replace(data, front=tuple(front), drawn=tuple(range(len(front))), best=(), choosing=None)
-    page = opened(render_report(some), NO_WEBGL).page
+    found = opened(render_report(some), NO_WEBGL)
+    page = found.page
     heading = page.locator("#front-table thead th").all_text_contents()
     column = next(i for i, words in enumerate(heading) if words.strip().startswith("source pressure"))
     for row in page.locator("#front-table tbody tr").all():
         row.click()
+        found.settled()
         written = row.locator("td").nth(column).text_content().strip("✓✗ \n")
         told = page.locator("#details div", has_text="source pressure").locator("dd").inner_text()
         assert re.split(r"\s*[✓✗]", told)[0] == written

@@ -189,9 +189,17 @@ function fill(over, traces, isChosen) {
 
 function followInFigures() {
   const fronts = report.figures.filter((figure) => figure.axes);
-  follow(() => Promise.all(fronts.map((figure) => {
-    if (isDotted(figure)) return followInDots(figure);
-    markFigure(figure);
-    return redraw(figure);
-  })));
+  follow(() => fronts.filter(isDotted).forEach(followInDots));
+  for (const figure of fronts.filter((other) => !isDotted(other))) followThen(() => followInFigure(figure));
+}
+
+async function followInFigure(figure) {
+  if (figure.webgl) {
+    if (!figure.begun) return; // it begins with the selection in it
+    await idle();
+    if (figure.told === told) return; // whoever was overtaken has drawn the same
+  }
+  figure.told = told;
+  markFigure(figure);
+  await redraw(figure);
 }

@@ -38,7 +38,6 @@ function unfoldForPaper() {
 
 async function beginSelecting() {
   followInTables();
-  followInFigures();
   followClosely();
   followInSketch();
   followInSheet();
@@ -46,6 +45,7 @@ async function beginSelecting() {
   beginParallel();
   followInBar();
   followInAddress();
+  followInFigures(); // after the others: there may be WebGL among them
   document.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && selection.active) clearSelection();
   });
