@@ -9,8 +9,8 @@ coordinates, made as soon as it is drawn and with them in view, is followed by e
 since the navigation. Then how long another brush takes, and a third with the front in three dimensions in view. All
 by the clock and in processor time of the page's main thread. Then of each kind of selection how long the first views
 take to follow, and all of them (`report_selections.py`). `--against` names an older report's page, which takes turns
-with it; `--write` puts the figures into `docs/benchmarks.md`; `--profile` writes the last load's processor profile, as
-the browser's own tools read it.
+with it; `--write` puts the figures into `docs/benchmarks.md`; `--profile` writes a load's processor profile, as the
+browser's own tools read it.
 """
 
 import argparse

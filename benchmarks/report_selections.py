@@ -48,7 +48,7 @@ window.timed = (kind) => {
     }, { capture: true, once: true }));
 };
 """
-"""Waits for an input; then how long until lines, points and bar tell of another count, and until all views do [ms]."""
+"""Waits for an input; then how long until lines, points and bar tell another count, and until all views do [ms]."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ const selection = {
 };
 const followers = { first: [], then: [] };
 const follow = (follower) => followers.first.push(follower); // what is cheap: one sees at once what was selected
-const followThen = (follower) => followers.then.push(follower); // when that is on the screen, each in a task of its own
+const followThen = (follower) => followers.then.push(follower); // when that is on the screen
 
 /** Select designs, unknown ones left out; returns when every view has followed. */
 function choose(wanted, by, lead) {
@@ -44,11 +44,14 @@ function clearSelection() {
   return tell();
 }
 
+const TASK = 30; // how long views follow before what was touched meanwhile has its turn [ms]
+
 /** The next frame is on the screen; of a page in the background no frame is drawn. */
 const painted = () => new Promise((done) => {
   requestAnimationFrame(() => setTimeout(done));
   setTimeout(done, 100);
 });
+const isReady = () => "ready" in document.documentElement.dataset; // else there is nothing to be seen yet
 
 let told = 0; // selections so far
 
@@ -58,8 +61,13 @@ async function tell() {
   const turn = told;
   document.documentElement.dataset.following = "yes"; // until all have
   for (const follower of followers.first) follower();
+  if (isReady()) await painted();
+  let began = performance.now();
   for (const follower of followers.then) {
-    if (document.documentElement.dataset.ready) await (follower === followers.then[0] ? painted() : new Promise((done) => setTimeout(done))); // what was touched meanwhile comes first
+    if (isReady() && performance.now() - began > TASK) {
+      await new Promise((done) => setTimeout(done));
+      began = performance.now();
+    }
     if (turn !== told) return;
     await follower();
   }
