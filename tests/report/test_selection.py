@@ -23,7 +23,7 @@ from divideropt.campaign.simulate import chosen_design
 from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.scenarios import BASE
 from divideropt.report.data import ReportData, read_report
-from divideropt.report.data import _drawn as drawn
+from divideropt.report.drawn import rows_drawn
 from divideropt.report.page import render_report
 from divideropt.report.tried import Tried
 from divideropt.store import Store
@@ -527,7 +527,7 @@ def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
     path = tmp_path / "large.html"
     values = np.abs(random.normal(1.0, 0.5, (20_000, 3))) * data.front[0].objectives
     tried = Tried(values, random.random(20_000) > 0.1, 25_000, 3)
-    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried))
+    text = render_report(replace(data, front=front, drawn=rows_drawn(front), tried=tried))
     path.write_text(text, encoding="utf-8")
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(path.as_uri(), timeout=PATIENCE)
