@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from divideropt.models import Outcome
+from divideropt.models import Outcome, Verdict
 from divideropt.models.divider import PARAMETERS, Divider, parameter_set
 from divideropt.problem import simulate
 from toy_model import Toy
@@ -31,6 +31,18 @@ def test_only_the_guilty_design_is_blamed():
     assert np.isnan(quantities[1]).all()
     honest, _ = Toy().evaluate(np.array([[0.2, 0.5, 0.5]]))
     assert np.array_equal(quantities[0], honest[0])
+
+
+class Vast(Toy):
+    def evaluate(self, designs):
+        return np.array([[1.7e308, -1e51, 1e50], [1e-310, -1e-51, -1e-50]]), [Verdict(Outcome.OK)] * 2
+
+
+def test_a_quantity_that_nothing_can_be_computed_with_is_infinite_or_zero():
+    fixed = {name: p.default for name, p in Vast().parameters.items()}
+    quantities, verdicts = simulate(Vast(), fixed, ["x1"], np.array([[0.2], [0.3]]))
+    assert quantities.tolist() == [[np.inf, -np.inf, 1e50], [0.0, 0.0, -1e-50]]
+    assert all(verdict.ok for verdict in verdicts)
 
 
 def test_absurd_dimensions_are_a_row_like_any_other():
