@@ -82,7 +82,7 @@ def check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None
     if out is None:
         return
     if out.suffix not in known:
-        raise UsageError(f"--out {out}: the name must end in {' or '.join(known)}")
+        raise UsageError(f"--out {out}: the name must end in {_any_of(known)}")
     if not out.parent.is_dir():
         raise UsageError(f"--out {out}: there is no folder {out.parent}; make it first")
     if read is not None and out.exists() and read.exists() and out.samefile(read):
@@ -91,6 +91,10 @@ def check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None
     stores = [p for p in whole.parents if (p / "campaign.yaml").is_file() and (p / "evaluations").is_dir()]
     if stores and whole != stores[0] / "report.html":
         raise UsageError(f"--out {out}: that is inside the store {stores[0]}; name a file elsewhere")
+
+
+def _any_of(words: tuple[str, ...]) -> str:
+    return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 def write_table(table: "pd.DataFrame", out: Path | None) -> None:
