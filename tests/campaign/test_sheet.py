@@ -111,7 +111,7 @@ def test_a_design_of_a_store_is_the_one_that_was_logged(tmp_path: Path):
     assert said.write(tmp_path / "sheet.svg").read_text("utf-8").startswith("<svg ")
     assert list(pd.read_csv(said.write(tmp_path / "sheet.csv"))["name"]) == list(said.table["name"])
     assert "spool diameter" in str(said)
-    with pytest.raises(UsageError, match="has 0 evaluations of a run nsga2-1-branch-1; name one"):
+    with pytest.raises(UsageError, match="has no evaluation of a run nsga2-1-branch-1; its runs are nsga2-1"):
         sheet(tmp_path / "store", "nsga2-1-branch-1/6")
     for wrong in ("nsga2-1/900", "nsga2-2/0", "nonsense", "../nsga2-1/1"):
         with pytest.raises(UsageError, match=r"nsga2-|no design's id"):

@@ -45,6 +45,38 @@ def test_a_quantity_that_nothing_can_be_computed_with_is_infinite_or_zero():
     assert all(verdict.ok for verdict in verdicts)
 
 
+class Careless(Toy):
+    def __init__(self, answer):
+        super().__init__()
+        self.answer = answer
+
+    def evaluate(self, designs):
+        return self.answer(*super().evaluate(designs))
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda quantities, verdicts: None, "TypeError"),
+        (
+            lambda quantities, verdicts: (quantities[:, :2], verdicts),
+            "(1, 2) and 1 verdicts, where (1, 3) and 1",
+        ),
+        (lambda quantities, verdicts: (quantities, verdicts[1:]), "shape (1, 3) and 0 verdicts"),
+        (lambda quantities, verdicts: (quantities, ["ok"] * len(verdicts)), "gives 'ok', where a Verdict"),
+        (lambda quantities, verdicts: (quantities, [Verdict("bad")] * len(verdicts)), "with an Outcome is due"),
+        (lambda quantities, verdicts: ([["a", "b", "c"]] * len(verdicts), verdicts), "could not convert"),
+    ],
+)
+def test_a_model_that_answers_with_anything_else_breaks_down_and_the_log_stays_sound(answer, words):
+    model = Careless(answer)
+    fixed = {name: p.default for name, p in model.parameters.items()}
+    quantities, verdicts = simulate(model, fixed, ["x1"], np.array([[0.2], [0.3]]))
+    assert np.isnan(quantities).all()
+    assert [v.outcome for v in verdicts] == [Outcome.CRASHED] * 2
+    assert words in verdicts[0].text
+
+
 def test_absurd_dimensions_are_a_row_like_any_other():
     assert "radial_clearance" in PARAMETERS
     designs = np.array([[1e200], [2.9e-6], [1e-120]])

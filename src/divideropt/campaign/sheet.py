@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.dump import dump_settings
 from divideropt.campaign.load import default_campaign, load_campaign, stored_campaign
@@ -265,7 +266,11 @@ def _stored(store: Store, campaign: Campaign, design: str) -> dict[str, float]:
             row = table.slice(index - first, 1)
             return {name: float(row[name][0].as_py()) for name in schema.variables}
         first += table.num_rows
-    held = f"the store {store.folder} has {first} evaluations of a run {run}"
+    if first == 0:
+        runs = ", ".join(run.name for run in stored_runs(campaign, store))
+        held = f"the store {store.folder} has no evaluation of a run {run}"
+        raise UsageError(f"{show(design)}: {held}; its runs are {runs}")
+    held = f"the store {store.folder} has {first} evaluations of run {run}, {run}/0 to {run}/{first - 1}"
     raise UsageError(f"{show(design)}: {held}; name one of them")
 
 

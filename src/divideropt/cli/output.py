@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 # ruff: noqa: PLC0415 (what takes time is imported where it is needed)
 
 
+_MISTAKEN = (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP, errno.ENOTDIR)
+"""What the system says of a path that cannot be meant."""
+
+
 class _File(click.Path):
     """A path by which something can be looked up, whether or not it is there."""
 
@@ -34,7 +38,7 @@ class _File(click.Path):
             if stat.S_ISDIR(path.stat().st_mode):
                 (path / "campaign.yaml").stat()
         except OSError as error:
-            if error.errno not in (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP):  # not there, or the disk's failure
+            if error.errno not in _MISTAKEN:  # not there, or the disk's failure
                 return path
             raise UsageError(f"{path}: {error.strerror}; name another path") from None
         return path
