@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from browsing import NO_WEBGL, Opened, quiet
+from browsing import FITTING, NO_WEBGL, Opened, eventually, quiet
 from divideropt.report.data import ReportData
 from divideropt.report.page import render_report
 from pagechecks import axes_without_words, blank_figures, findings
@@ -102,9 +102,12 @@ def test_keys_alone_lead_from_the_pages_start_to_a_design_and_its_response(repor
     assert page.evaluate("document.activeElement.getAttribute('data-id')") == chosen
     assert page.evaluate("document.activeElement.getAttribute('aria-selected')") == "true"
     assert chosen in report.title()
-    page.wait_for_timeout(200)
-    assert report.lines() != before
-    assert page.locator("#response .legend").text_content().endswith(chosen)
+
+    def response() -> None:
+        assert report.lines() != before
+        assert page.locator("#response .legend").text_content().endswith(chosen)
+
+    eventually(page, response)
     page.keyboard.press("Escape")
     expect(page.locator("#announced")).to_have_text("Nothing selected")
     page.keyboard.press("Tab")
@@ -133,9 +136,13 @@ def test_every_place_that_tab_reaches_shows_that_it_has_the_focus(page):
 def test_a_narrow_screen_or_a_large_zoom_scrolls_one_way(page, width, zoom):
     """1280 px at 400 % are 320 px (WCAG 2.2, 1.4.10)."""
     page.set_viewport_size({"width": width // zoom, "height": 700})
-    page.wait_for_timeout(300)
-    assert page.evaluate(BEYOND) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= width // zoom
+
+    def fits() -> None:
+        assert page.evaluate(FITTING)
+        assert page.evaluate(BEYOND) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width // zoom
+
+    eventually(page, fits)
     assert page.locator("#front-table").bounding_box()["width"] > width // zoom, "the table scrolls in its frame"
 
 
@@ -164,10 +171,14 @@ def test_paper_is_light_and_has_everything_but_what_is_clicked(page):
     page.emulate_media(media="screen", color_scheme="dark")
     page.emulate_media(media="print", color_scheme="dark")
     page.set_viewport_size({"width": 703, "height": 1000})
-    page.wait_for_timeout(500)
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    ink = page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
-    assert set(ink) == {"rgb(0, 0, 0)"}
+
+    def inked() -> None:
+        ink = page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
+        assert set(ink) == {"rgb(0, 0, 0)"}
+
+    eventually(page, inked)
+    page.wait_for_function(FITTING)
     for hidden in ("nav", "#bar", ".skip", ".choose", ".modebar"):
         assert not page.locator(hidden).first.is_visible()
     assert page.locator("#campaign").is_visible(), "what is folded away is opened"
@@ -199,20 +210,26 @@ def test_figures_have_the_papers_width_when_printed_and_the_screens_again(page, 
     printed = page.evaluate("window.printed")
     assert printed
     assert all(width == own for width, own in printed)
-    page.wait_for_timeout(500)  # plotly waits a tenth of a second
-    assert all(width == own for width, own in page.evaluate(OWN))
-    assert page.evaluate(OWN)[0][1] > printed[0][1]
+
+    def wide_again() -> None:  # plotly waits a tenth of a second
+        assert all(width == own for width, own in page.evaluate(OWN))
+        assert page.evaluate(OWN)[0][1] > printed[0][1]
+
+    eventually(page, wide_again)
 
 
 def test_figures_follow_paper_of_another_width(page):
     page.emulate_media(media="print")
-    page.wait_for_timeout(500)
+    page.wait_for_function(FITTING)
     wide = page.evaluate(OWN)
     page.set_viewport_size({"width": 703, "height": 1000})
-    page.wait_for_timeout(500)
-    narrow = page.evaluate(OWN)
-    assert all(width == own for width, own in narrow)
-    assert narrow[0][1] < wide[0][1]
+
+    def narrow() -> None:
+        found = page.evaluate(OWN)
+        assert all(width == own for width, own in found)
+        assert found[0][1] < wide[0][1]
+
+    eventually(page, narrow)
     assert blank_figures(page) == []
 
 

@@ -15,7 +15,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 from ruamel.yaml import YAML
 
-from browsing import NO_WEBGL, PATIENCE, Opened, borne_out, quiet
+from browsing import FITTING, NO_WEBGL, PATIENCE, STILL, Opened, borne_out, eventually, into_view, quiet
 from divideropt.campaign.designs import evaluate_designs, read_designs
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_model
@@ -23,7 +23,7 @@ from divideropt.campaign.simulate import chosen_design
 from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.scenarios import BASE
 from divideropt.report.data import ReportData, read_report
-from divideropt.report.data import _drawn as drawn
+from divideropt.report.drawn import rows_drawn
 from divideropt.report.page import render_report
 from divideropt.report.tried import Tried
 from divideropt.store import Store
@@ -91,22 +91,6 @@ def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) ->
     mouse.up()
 
 
-STILL = """async (selector) => {
-  const place = () => JSON.stringify(document.querySelector(selector).getBoundingClientRect());
-  const frame = () => new Promise((done) => requestAnimationFrame(done));
-  for (let still = 0, last = place(); still < 5; last = place()) {
-    await frame();
-    still = place() === last ? still + 1 : 0;
-  }
-}"""
-"""Waits until an element has not moved for five frames: what follows a selection is drawn later, and moves others."""
-
-
-def into_view(found: Opened, selector: str) -> None:
-    found.page.locator(selector).evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
-    found.page.evaluate(STILL, selector)
-
-
 def brush(found: Opened, axis: int, begin: float, end: float) -> None:
     """Drag along an axis, between shares of it from above."""
     into_view(found, "#parallel")
@@ -117,27 +101,31 @@ def brush(found: Opened, axis: int, begin: float, end: float) -> None:
 def told(found: Opened, count: int) -> None:
     """Wait until so many are announced."""
     expect(found.page.locator("#announced")).to_contain_text(re.compile(rf"^{count or 'No'} design"))
-    found.page.wait_for_timeout(200)
 
 
 def followed(found: Opened, count: int) -> None:
-    """Every view tells so many designs from the others."""
+    """Every view tells so many designs from the others, and has come to rest."""
     told(found, count)
-    seen = found.page.evaluate(COUNTS)
-    compared = min(count, 12) if count > 1 else seen["compared"]
-    assert seen == {
-        "lines": count,
-        "projections": [count] * 3,
-        "solid": seen["solid"] if seen["solid"] is None else count,
-        "rows": count,
-        "compared": compared,
-        "address": count,
-    }
-    rows = found.page.locator("#front-table tr[aria-selected=true]").evaluate_all(
-        "rows => rows.map(r => r.dataset.id)"
-    )
-    for pair in ("0-1", "0-2", "1-2"):
-        borne_out(found.dots(pair), rows)
+
+    def views() -> None:
+        seen = found.page.evaluate(COUNTS)
+        compared = min(count, 12) if count > 1 else seen["compared"]
+        assert seen == {
+            "lines": count,
+            "projections": [count] * 3,
+            "solid": seen["solid"] if seen["solid"] is None else count,
+            "rows": count,
+            "compared": compared,
+            "address": count,
+        }
+        rows = found.page.locator("#front-table tr[aria-selected=true]").evaluate_all(
+            "rows => rows.map(r => r.dataset.id)"
+        )
+        for pair in ("0-1", "0-2", "1-2"):
+            borne_out(found.dots(pair), rows)
+
+    eventually(found.page, views)
+    found.page.evaluate(STILL, "#parallel")
 
 
 def upper_half(data: ReportData, axis: int) -> int:
@@ -151,7 +139,11 @@ def test_a_brush_is_followed_by_every_view(report, data):
     count = upper_half(data, 0)
     assert 1 < count < len(data.front)
     followed(report, count)
-    assert len([line for line in report.lines() if line]) == 2 * 3 + 2 * count, "the sets, and each that is selected"
+
+    def lines() -> None:
+        assert len([line for line in report.lines() if line]) == 2 * 3 + 2 * count, "the sets, and each selected"
+
+    eventually(report.page, lines)
     assert f"and {count - 1} other" in report.title()
     quiet(report)
 
@@ -304,7 +296,11 @@ def test_keys_alone_select_a_design_and_its_response(report, data):
     report.page.keyboard.press(" ")
     followed(report, 1)
     assert data.front[place].design_id in report.title()
-    assert report.lines() != before
+
+    def another() -> None:
+        assert report.lines() != before
+
+    eventually(report.page, another)
 
 
 def test_every_table_of_designs_is_reached_by_tab(report):
@@ -351,6 +347,12 @@ def test_designs_that_the_page_has_not_are_said(report, data):
     assert report.page.evaluate(COUNTS)["rows"] == 1
 
 
+ANOTHER_ADDRESS = """(text) => new Promise((done) => {
+    addEventListener("hashchange", () => done(), { once: true });
+    location.hash = text;
+})"""
+"""Gives the page an address, and waits until it has read it."""
+
 HOSTILE_FRAGMENTS = (
     "#select=",
     "#select=__proto__/constructor",
@@ -369,8 +371,7 @@ HOSTILE_FRAGMENTS = (
 def test_a_hostile_address_is_ignored(report, data, fragment):
     report.page.locator("#front-table tbody tr").nth(1).click()
     followed(report, 1)
-    report.page.evaluate("text => { location.hash = text; }", fragment)
-    report.page.wait_for_timeout(100)
+    report.page.evaluate(ANOTHER_ADDRESS, fragment)
     followed(report, 1)
     assert data.front[1].design_id in report.title()
     assert report.page.evaluate("window.hacked ?? null") is None
@@ -449,10 +450,14 @@ def test_another_width_keeps_every_height_and_fits_the_paper(opened, page_text, 
     found.page.emulate_media(media="print")
     found.page.set_viewport_size({"width": 703, "height": 1200})  # A4 within its margins
     expect(found.page.locator("#bar")).to_be_hidden()
-    found.page.wait_for_timeout(500)
-    assert found.page.evaluate(heights) == before
-    assert found.page.locator("#parallel").bounding_box()["width"] == 703
-    assert found.page.locator("#parallel .axis .spine").last.bounding_box()["x"] < 703
+
+    def fitting() -> None:
+        assert found.page.evaluate(FITTING)
+        assert found.page.evaluate(heights) == before
+        assert found.page.locator("#parallel").bounding_box()["width"] == 703
+        assert found.page.locator("#parallel .axis .spine").last.bounding_box()["x"] < 703
+
+    eventually(found.page, fitting)
     quiet(found)
 
 
@@ -522,7 +527,7 @@ def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
     path = tmp_path / "large.html"
     values = np.abs(random.normal(1.0, 0.5, (20_000, 3))) * data.front[0].objectives
     tried = Tried(values, random.random(20_000) > 0.1, 25_000, 3)
-    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried))
+    text = render_report(replace(data, front=front, drawn=rows_drawn(front), tried=tried))
     path.write_text(text, encoding="utf-8")
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(path.as_uri(), timeout=PATIENCE)
