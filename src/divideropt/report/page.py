@@ -26,7 +26,7 @@ from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
 from divideropt.report.sensitivity_figures import index_bars
-from divideropt.report.sheets import sheets_payload
+from divideropt.report.sheets import FIRST, MOST_SIMULATED, sheets_payload
 from divideropt.report.sketch_svg import DEFS, light_style
 from divideropt.report.sketches import sketch_payload
 from divideropt.report.step_figure import step_figure, step_window
@@ -98,6 +98,8 @@ def render_report(data: ReportData) -> str:
         brief=brief,
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
+        first_step=FIRST,
+        most_simulated=MOST_SIMULATED,
         rounded=[] if data.sheets is None else [name.replace("_", " ") for name in data.sheets.rounded],
         number=number,
         verified_words=lambda design: verified_words(design, data),
@@ -171,7 +173,8 @@ def _dimensions(data: ReportData, designs: Mapping[str, Any]) -> dict[str, Any]:
     if data.sketches is None:
         return {}
     variables = np.array(designs["values"][: len(data.variables)], dtype=np.float64).T
-    drawing = sketch_payload(data.sketches, variables)
+    valves = [] if data.sheets is None else [column.dimensions for column in data.sheets.valves]
+    drawing = sketch_payload(data.sketches, variables, valves)
     if drawing is None:
         return {}
     found: dict[str, Any] = {"sketch": {**drawing, "defs": DEFS, "style": light_style()}}
@@ -204,7 +207,10 @@ def _field(
 
 def _designs(data: ReportData) -> dict[str, Any]:
     """Every design that the page can show, a list a column: first those drawn, the best of them first."""
-    more = [*data.best, *(candidate.design for candidate in (data.choosing.candidates if data.choosing else ()))]
+    closely = {response.name for response in data.responses.designs} if data.responses else set()
+    closely |= data.sheets.designs.keys() if data.sheets else set()
+    more = [design for design in (*data.front, *data.best) if design.design_id in closely]
+    more += [*data.best, *(candidate.design for candidate in (data.choosing.candidates if data.choosing else ()))]
     listed = data.front[:MOST_ROWS]
     known = {design.design_id: design for design in (*(data.front[i] for i in data.drawn), *listed, *more)}
     places = {name: place for place, name in enumerate(data.strategies)}
