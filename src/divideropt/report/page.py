@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from divideropt.analysis import Summary
+from divideropt.campaign.load import stored_campaign
 from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.convergence_figure import EARLY, convergence_figure
 from divideropt.report.convergence_tables import convergence_table, unequal
@@ -25,7 +26,9 @@ from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
+from divideropt.report.sensitivity_data import is_study
 from divideropt.report.sensitivity_figures import index_bars
+from divideropt.report.sensitivity_page import write_study
 from divideropt.report.sheets import FIRST, MOST_SIMULATED, sheets_payload
 from divideropt.report.sketch_svg import DEFS, light_style
 from divideropt.report.sketches import sketch_payload
@@ -39,7 +42,7 @@ MOST_DEVIATING = 40
 
 
 def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summary] | None = None) -> Path:
-    """Write the report of a store, finished or not.
+    """Write the report of a store, finished or not; of a sensitivity study its page.
 
     Args:
         store: The store.
@@ -50,11 +53,13 @@ def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summa
         Where it is.
 
     Raises:
-        UsageError: There is no store in the folder.
+        UsageError: There is no store in the folder, or too little of a study to analyse.
         FileMistakes: The campaign in it cannot be read.
         StoreError: The store is damaged or of a later version.
         DiskError: The disk refused.
     """
+    if is_study(stored_campaign(store)):
+        return write_study(store, out)
     text = render_report(read_report(store, logs))
     return store.write_report(text) if out is None else save(out, text)
 
