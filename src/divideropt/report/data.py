@@ -26,6 +26,7 @@ from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import Run, build_problem, reference_of
+from divideropt.models import Verifiable
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem
 from divideropt.report.choosing import Choosing, choosing_of
@@ -225,7 +226,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
         cost,
         state_of(facts, store) + notes + waiting,
-        read_provenance(store, campaign),
+        read_provenance(store, campaign, verifiable=isinstance(problem.model, Verifiable)),
         study_summary(store),
         read_sketches(problem),
         read_sheets(problem, closely, _evaluated(closely, [table, *_bests(logs)], schema)),

@@ -34,7 +34,14 @@ from divideropt.report.sketch_svg import DEFS, light_style
 from divideropt.report.sketches import sketch_payload
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.summary_tables import goals_table
-from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
+from divideropt.report.tables import (
+    best_table,
+    commonest_failure,
+    front_table,
+    outcome_table,
+    runs_table,
+    verified_words,
+)
 from divideropt.store import Store
 
 MOST_DEVIATING = 40
@@ -95,6 +102,8 @@ def render_report(data: ReportData) -> str:
             "reasons": reasons_table(data),
             "volumes": volumes_table(data),
         },
+        pairs=math.comb(len(data.objectives), 2),
+        commonest_failure=commonest_failure(data),
         unequal=unequal(data.tracks),
         share=share,
         early=EARLY,
@@ -117,7 +126,8 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
     found = []
     if data.front:
         found += _front_figures(data)
-    found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
+    if any(run.feasible for run in data.runs):
+        found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
     if data.cost is not None:
         for pair, figure in cost_figures(data):
             names = " and ".join(data.objectives[i].axis.words for i in pair)
@@ -227,6 +237,9 @@ def _designs(data: ReportData) -> dict[str, Any]:
         "values": [
             [value if math.isfinite(value) else None for value in column] for column in zip(*rows, strict=True)
         ],
+        "valid": None
+        if all(design.valid is None for design in known.values())
+        else [None if design.valid is None else int(design.valid) for design in known.values()],
         "attainment": None
         if data.front[0].attainment is None
         else [None if d.attainment is None else rounded(d.attainment) for d in known.values()],
