@@ -40,6 +40,13 @@ function sheetSentence(columns) {
   return "Rounded to " + stepWords() + ": " + words(other) + ". " + asItIs;
 }
 
+/** A symbol, what follows an underscore lowered. */
+function symbolCell(symbol) {
+  const cell = make("td", undefined, { class: "symbol" });
+  for (const part of symbol.match(/_[A-Za-z0-9]+|[^_]+|_/g) || []) cell.append(/^_./.test(part) ? make("sub", part.slice(1)) : part);
+  return cell;
+}
+
 function sheetTable(lines, values) {
   const table = make("table");
   const head = table.createTHead().insertRow();
@@ -54,7 +61,7 @@ function sheetTable(lines, values) {
       row.append(make("th", section, { colspan: 3 + titles.length, scope: "colgroup" }));
     }
     const row = body.insertRow();
-    row.append(make("th", line.words, { scope: "row" }), make("td", line.symbol, { class: "symbol" }));
+    row.append(make("th", line.words, { scope: "row" }), symbolCell(line.symbol));
     for (const column of values) {
       const cell = make("td", sheetNumber(column[i]), { class: "number" });
       const isMet = goalMet(line, column[i]);
@@ -118,7 +125,8 @@ function sheetSvg(columns) {
         file.append(text(x, y + 6, section, "title"), svgMake("path", { class: "measure", d: "M" + x + " " + (y + 12) + "h456" }));
         y += SHEET_LINE + 8;
       }
-      file.append(text(x, y, line.words), text(x + 178, y, line.symbol, "note"), ...values.map((column, k) => text(x + places[k], y, sheetNumber(column[i]), "", "end")), text(x + 404, y, line.shown, "note"));
+      const symbol = LETTER * line.words.length < 172 ? line.symbol : ""; // else one would lie on the other
+      file.append(text(x, y, line.words), sketchText(x + 178, y, symbol, "note", "start"), ...values.map((column, k) => text(x + places[k], y, sheetNumber(column[i]), "", "end")), text(x + 404, y, line.shown, "note"));
       y += SHEET_LINE;
     }
     lowest = Math.max(lowest, y);
