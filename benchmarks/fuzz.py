@@ -72,7 +72,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "campaign.yaml"
         if asked.show:
-            content = _case(asked.seed, asked.show)
+            content = case(asked.seed, asked.show)
             sys.stdout.buffer.write(content + b"\n")
             print(judge(content, path))
             return 0
@@ -142,7 +142,8 @@ def from_bytes(random: Random) -> bytes:
 KINDS: dict[str, Callable[[Random], bytes]] = {"schema": from_schema, "values": from_values, "bytes": from_bytes}
 
 
-def _case(seed: int, name: str) -> bytes:
+def case(seed: int, name: str) -> bytes:
+    """Make the file of a name, `KIND:NUMBER`, of a seed."""
     kind, _, number = name.partition(":")
     return KINDS[kind](Random(f"{seed}:{kind}:{number}"))
 
@@ -153,7 +154,7 @@ def _judge_all(kind: str, count: int, seed: int, path: Path) -> int:
     slowest, bugs, begin = (0.0, ""), 0, time.perf_counter()
     for number in range(count):
         name = f"{kind}:{number}"
-        found = judge(_case(seed, name), path)
+        found = judge(case(seed, name), path)
         codes[found.code] += 1
         slowest = max(slowest, (found.seconds, name))
         if found.bug or found.seconds > LONGEST:

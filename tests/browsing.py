@@ -2,7 +2,8 @@
 
 import os
 import shutil
-from collections.abc import Collection, Iterator
+import time
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -41,6 +42,21 @@ APART = 12.0
 """How far from each other two marks surely do not touch, nor the ring around the one that is shown closely [px]."""
 
 
+STILL = """async (selector) => {
+  const place = () => JSON.stringify(document.querySelector(selector).getBoundingClientRect());
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  for (let still = 0, last = place(); still < 5; last = place()) {
+    await frame();
+    still = place() === last ? still + 1 : 0;
+  }
+}"""
+"""Waits until an element has not moved for five frames: what follows a selection is drawn later, and moves others."""
+
+FITTING = """() => [...document.querySelectorAll(".js-plotly-plot")].filter((figure) => figure.clientWidth)
+    .every((figure) => Math.abs(figure._fullLayout.width - figure.clientWidth) <= 1)"""
+"""Whether every figure that is shown is as wide as its place."""
+
+
 @dataclass
 class Opened:
     """A page, and what it did that it should not."""
@@ -53,7 +69,8 @@ class Opened:
         return self.page.locator(selector).count()
 
     def lines(self) -> list[str]:
-        """Outlines of the response's lines as drawn."""
+        """Outlines of the response's lines as drawn, for what is selected."""
+        self.settled()
         return self.page.eval_on_selector_all(
             "#response .scatterlayer path.js-line", "paths => paths.map(p => p.getAttribute('d'))"
         )
@@ -62,8 +79,31 @@ class Opened:
         """Each design's `id`, place on the screen `x`, `y` [px], and alpha in the canvases `all` and `some` there."""
         return list(self.page.evaluate(DOTS, pair))
 
+    def settled(self) -> None:
+        """Wait until every view has followed the selection."""
+        self.page.wait_for_selector("html:not([data-following])", timeout=PATIENCE)
+
     def title(self) -> str:
+        self.settled()
         return self.page.locator("#selected-title").inner_text()
+
+
+def eventually(page: Page, check: Callable[[], None]) -> None:
+    """Check again and again until it passes: a page follows in its own time. At last its complaint is raised."""
+    end = time.monotonic() + PATIENCE / 1000
+    while True:
+        try:
+            return check()
+        except AssertionError:
+            if time.monotonic() > end:
+                raise
+        page.wait_for_timeout(50)
+
+
+def into_view(found: Opened, selector: str) -> None:
+    """Bring an element to the middle of the window, and wait until it stays there."""
+    found.page.locator(selector).evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
+    found.page.evaluate(STILL, selector)
 
 
 def borne_out(dots: list[dict[str, float]], chosen: Collection[object]) -> None:

@@ -1,5 +1,6 @@
 """What several tests share: designs, the record a kernel reads, and the author's data."""
 
+import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 from numpy.typing import NDArray
 from playwright.sync_api import Browser
@@ -43,6 +45,23 @@ BOX = {
     "centred_opening": (0.1, 0.9),
 }
 """Variables and bounds of C.6, SI."""
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """No processes beside this one where files and single tests are named: they are done sooner without."""
+    return None if any(Path(argument).is_dir() for argument in config.args) else 0
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _compiled_once(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Of several processes one compiles the model, then the others load it: numba's cache has no lock."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return
+    with FileLock(tmp_path_factory.getbasetemp().parent / "compiled.lock"):
+        for formulation in ("conservative", "listing"):
+            model = Divider(formulation)
+            model.evaluate(np.array([list(_design().values())]))
+            measure(model.respond(_design()))
 
 
 def _design(base: str = "thesis_base", /, **changes: float) -> dict[str, float]:

@@ -22,7 +22,7 @@ CANCEL_RATIO, CANCEL_ROUNDING = 0.95, 0.005
 def _overshoot(runs: Runs) -> Judgement:
     sweep = runs.sweep("total_pressure_drop")
     drops = (float(sweep.places[0]), USUAL_DROP, float(sweep.places[-1]))
-    beyond = {drop: _beyond(runs, drop) for drop in drops}
+    beyond = {drop: overshoots(runs, drop) for drop in drops}
     least, usual, most = (max(flows) for flows in beyond.values())
     signs = (least >= OVERSHOOT, least > max(usual, most))
     answer = Answer.YES if all(signs) else Answer.IN_PART if any(signs) else Answer.NO
@@ -33,7 +33,7 @@ def _overshoot(runs: Runs) -> Judgement:
     return Judgement(answer, figures + tail(sweep))
 
 
-def _beyond(runs: Runs, drop: float) -> tuple[float, float]:
+def overshoots(runs: Runs, drop: float) -> tuple[float, float]:
     """Return how far QL1 and QL2 go beyond their final values, over these: away from where the step throws them."""
     response = runs.response({"total_pressure_drop": drop})
     stay = response.phases[-1]

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from SALib.analyze.sobol import analyze
 
-from divideropt.analysis.pick_freeze import RESAMPLES, Blocks, _saltelli, blocks_of, by_pairs, size_of, whole
+from divideropt.analysis.blocks import Blocks, blocks_of
+from divideropt.analysis.pick_freeze import RESAMPLES, by_pairs, size_of, whole
+from divideropt.analysis.saltelli import saltelli_terms
 from sensitivity_models import GFunction, Ishigami, g_indices, ishigami_indices, sample
 
 
@@ -97,7 +99,7 @@ def test_our_own_terms_make_the_indices_of_salib():
     designs = sample(model, 256)
     blocks = blocks_of(designs)
     values = model.evaluate(designs)[0][:, 0].reshape(-1, blocks.size)
-    terms, combine = _saltelli((values - values.mean()) / values.std(), blocks)
+    terms, combine = saltelli_terms((values - values.mean()) / values.std(), blocks)
     np.testing.assert_allclose(
         combine(terms.mean(axis=0)[None])[0], whole(values, blocks).values, rtol=1e-10, atol=1e-12
     )

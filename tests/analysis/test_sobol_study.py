@@ -7,8 +7,9 @@ import pytest
 from SALib.analyze.morris import analyze
 from SALib.sample import morris
 
+from divideropt.analysis.elementary import effects_of, summary_of, ways_of
 from divideropt.analysis.failures import PARTS, failures_of
-from divideropt.analysis.morris import _effects, _summary, _ways, morris_study
+from divideropt.analysis.morris import morris_study
 from divideropt.analysis.sobol import sobol_study
 from divideropt.analysis.treatments import Treated, Treatment
 from divideropt.problem import Constraint, DesignSpace, Evaluations, Objective, Problem, Variable
@@ -182,8 +183,8 @@ def test_elementary_effects_are_those_of_salib():
     widths = of(study, "f", "mu_star")
     np.testing.assert_allclose((widths["high"] - widths["low"]) / 2, theirs["mu_star_conf"], rtol=1e-12)
     item = Treated(Treatment.ALL, evaluations.quantities[:, 0], np.full(len(evaluations), True))
-    effects = _effects(item, _ways(evaluations.designs, problem.space))
-    ours = np.array([_summary(column) for column in effects.T])
+    effects = effects_of(item, ways_of(evaluations.designs, problem.space))
+    ours = np.array([summary_of(column) for column in effects.T])
     np.testing.assert_allclose(ours[:, 0], theirs["mu"], rtol=1e-9)
     np.testing.assert_allclose(ours[:, 1], theirs["mu_star"], rtol=1e-9)
     np.testing.assert_allclose(ours[:, 2], theirs["sigma"], rtol=1e-9)

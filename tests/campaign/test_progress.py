@@ -6,7 +6,8 @@ from dataclasses import asdict
 
 import pytest
 
-from divideropt.campaign.progress import Counter, Display, Standing, time_left
+from divideropt.campaign.progress import Counter, Display
+from divideropt.campaign.standing import Standing, time_left
 
 
 def standing(run="nsga2-1", done=100, budget=1000, rate=10.0, ended=None):

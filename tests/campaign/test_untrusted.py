@@ -53,7 +53,7 @@ def test_a_mutated_campaign_file_is_right_or_refused_in_sentences_within_two_sec
 
 @pytest.mark.parametrize("kind", FUZZ.KINDS)
 def test_some_are_right_and_most_are_not(kind, path):
-    codes = [FUZZ.judge(FUZZ._case(0, f"{kind}:{i}"), path).code for i in range(60)]
+    codes = [FUZZ.judge(FUZZ.case(0, f"{kind}:{i}"), path).code for i in range(60)]
     assert 0 < codes.count(0) < codes.count(2)
 
 

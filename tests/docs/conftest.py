@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 
 from following import ROOT
 
@@ -31,8 +32,11 @@ def _sphinx() -> Sphinx:
 
 @pytest.fixture(scope="session", name="site")
 def _site(tmp_path_factory: pytest.TempPathFactory, sphinx: Sphinx) -> Path:
-    """The folder of the pages; a warning is an error."""
-    folder = tmp_path_factory.mktemp("site")
-    done = sphinx(ROOT / "docs", folder)
-    assert (done.returncode, done.stderr) == (0, "")
+    """The folder of the pages; a warning is an error. The processes that test share it."""
+    ours = tmp_path_factory.getbasetemp()
+    folder = (ours.parent if "PYTEST_XDIST_WORKER" in os.environ else ours) / "site"
+    with FileLock(f"{folder}.lock"):
+        if not folder.exists():
+            done = sphinx(ROOT / "docs", folder)
+            assert (done.returncode, done.stderr) == (0, "")
     return folder

@@ -114,7 +114,7 @@ def test_its_slip_is_what_runs_say_now():
 
 @pytest.mark.parametrize("name", ["conservative", "listing"])
 def test_its_overshoot_is_what_runs_say_now(runs, name):
-    beyond = [f"{1e2 * flow:.1f} %" for flow in drops._beyond(runs[name], drops.USUAL_DROP)]
+    beyond = [f"{1e2 * flow:.1f} %" for flow in drops.overshoots(runs[name], drops.USUAL_DROP)]
     assert f"at 3 MPa QL1 by {beyond[0]}, QL2 by {beyond[1]}" in block(
         "if the pressure drop is too small, the flows overshoot"
     )

@@ -98,7 +98,7 @@ def test_the_second_signal_leaves_at_once(tmp_path):
     process = start(tmp_path, "way: hang, end: 1, once: once")
     wait_until((tmp_path / "once").exists, "the model did not hang")
     os.kill(process.pid, signal.SIGTERM)
-    time.sleep(0.5)
+    wait_until((tmp_path / "results" / "rough" / ".running" / "stop").exists, "the signal was not heard")
     assert process.poll() is None
     asked = time.monotonic()
     os.kill(process.pid, signal.SIGTERM)

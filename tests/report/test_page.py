@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from browsing import NO_WEBGL, Opened, borne_out, quiet
+from browsing import NO_WEBGL, Opened, borne_out, eventually, into_view, quiet
 from divideropt.campaign.load import default_campaign
 from divideropt.campaign.simulate import simulate
 from divideropt.report import Curve, ResponseCurves, response_page, write_response
@@ -36,13 +36,17 @@ BESIDE = """([pair, places]) => {
 """How many pixels of a projection have ink farther than a mark's size from every design."""
 
 
+UNDER_POINTER = "(document.getElementById('projection-0-1')._hoverdata ?? []).map(point => point.customdata)"
+"""What plotly knows to be under the pointer, and so would be clicked."""
+
+
 @pytest.fixture(scope="module")
 def report(opened: Callable[..., Opened], data: ReportData) -> Opened:
     return opened(render_report(data))
 
 
 def test_nothing_leaves_the_page(report):
-    report.page.wait_for_timeout(200)
+    report.page.wait_for_load_state("networkidle")
     quiet(report)
 
 
@@ -102,9 +106,12 @@ def test_another_row_changes_the_response(report, data):
     before = report.lines()
     report.page.locator("#front-table tbody tr").nth(3).click()
     expect(report.page.locator("#selected-title")).to_contain_text(_id(data, 3))
-    report.page.wait_for_timeout(200)
-    assert len(report.lines()) == len(before)
-    assert report.lines() != before
+
+    def another() -> None:
+        assert report.lines() != before
+        assert len(report.lines()) == len(before)
+
+    eventually(report.page, another)
     assert report.page.locator("#choice").input_value() == _id(data, 3)
     assert report.page.locator("tr[aria-current=true]").first.get_attribute("data-id") == _id(data, 3)
 
@@ -120,14 +127,17 @@ def test_the_list_and_the_keyboard_select_too(report, data):
 
 def test_a_click_on_a_point_selects_its_design(report, data):
     report.page.select_option("#choice", _id(data, 0))
-    report.page.wait_for_timeout(300)
-    report.page.locator("#projection-0-1").evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
+    into_view(report, "#projection-0-1")
     highest = min(report.dots("0-1"), key=lambda dot: dot["y"])
     chosen = highest["x"], highest["y"]
     before = report.title()
-    report.page.mouse.move(chosen[0] - 2, chosen[1])
-    report.page.mouse.move(*chosen)
-    report.page.wait_for_timeout(200)
+
+    def noticed() -> None:
+        report.page.mouse.move(chosen[0] - 2, chosen[1])
+        report.page.mouse.move(*chosen)
+        assert report.page.evaluate(UNDER_POINTER) == [highest["id"]]
+
+    eventually(report.page, noticed)
     report.page.mouse.click(*chosen)
     expect(report.page.locator("#selected-title")).not_to_have_text(before)
 
@@ -144,17 +154,22 @@ def test_a_heading_sorts_by_its_column(report):
 
 def test_the_figures_follow_the_theme(report):
     def colours() -> list[str]:
-        report.page.wait_for_timeout(500)
         return report.page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
 
     light = colours()
-    report.page.emulate_media(color_scheme="dark")
-    dark = colours()
-    report.page.emulate_media(color_scheme="light")
     assert light
-    assert dark
-    assert set(light).isdisjoint(dark)
-    assert colours() == light
+
+    def dark() -> None:
+        assert colours()
+        assert set(light).isdisjoint(colours())
+
+    def light_again() -> None:
+        assert colours() == light
+
+    report.page.emulate_media(color_scheme="dark")
+    eventually(report.page, dark)
+    report.page.emulate_media(color_scheme="light")
+    eventually(report.page, light_again)
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +184,11 @@ def test_a_design_without_a_response_says_so(flat, data):
     name = next(d.design_id for d in data.front if d.design_id != kept)
     flat.page.locator(f'#front-table tr[data-id="{name}"]').click()
     flat.page.locator("#unstored").wait_for(state="visible")
-    assert len([line for line in flat.lines() if line]) == 2 * 3
+
+    def lines() -> None:
+        assert len([line for line in flat.lines() if line]) == 2 * 3
+
+    eventually(flat.page, lines)
     assert flat.page.locator("#choice option:checked").inner_text() == f"{name} (no response in the page)"
     quiet(flat)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from browsing import NO_WEBGL, Opened, quiet
+from browsing import FITTING, NO_WEBGL, Opened, eventually, quiet
 from divideropt.report.data import ReportData
 from divideropt.report.page import render_report
 from pagechecks import axes_without_words, blank_figures, findings
@@ -40,6 +40,19 @@ TRANSITIONS = """() => [...document.querySelectorAll("*")].map((e) => getCompute
     .filter((time) => parseFloat(time) > 0)"""
 
 
+SHADES = """() => {
+    const canvas = document.querySelector("#front canvas.printed");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const shades = [];
+    for (let i = 0; i < data.length; i += 4) {
+        const colour = data.subarray(i, i + 3);
+        if (data[i + 3] > 200) shades.push([Math.min(...colour), Math.max(...colour)]);
+    }
+    return [shades.filter(([, most]) => most < 60).length, shades.filter(([least]) => least > 215).length];
+}"""
+"""How many pixels of the front as it is printed are dark, and how many light: paper's text and the screen's."""
+
+
 @pytest.fixture(scope="module")
 def report(opened: Callable[..., Opened], data: ReportData) -> Opened:
     return opened(render_report(data), NO_WEBGL)
@@ -54,6 +67,7 @@ def page(report: Opened) -> Page:
     )
     report.page.keyboard.press("Escape")
     expect(report.page.locator("#let-go")).to_be_hidden()
+    report.settled()
     return report.page
 
 
@@ -61,6 +75,7 @@ def test_axe_finds_nothing_but_what_is_wrong(report, page):
     for row, keys in ((1, []), (3, ["Control"])):
         page.locator("#front-table tbody tr").nth(row).click(modifiers=keys)
     expect(page.locator("#compared tbody tr")).to_have_count(2)
+    report.settled()
     assert findings(report) == []
     quiet(report)
     page.evaluate(MISLEAD, "nothing")
@@ -99,12 +114,16 @@ def test_keys_alone_lead_from_the_pages_start_to_a_design_and_its_response(repor
     page.keyboard.press("Enter")
     chosen = data.front[2].design_id
     expect(page.locator("#announced[role=status]")).to_contain_text(chosen)
+    report.settled()
     assert page.evaluate("document.activeElement.getAttribute('data-id')") == chosen
     assert page.evaluate("document.activeElement.getAttribute('aria-selected')") == "true"
     assert chosen in report.title()
-    page.wait_for_timeout(200)
-    assert report.lines() != before
-    assert page.locator("#response .legend").text_content().endswith(chosen)
+
+    def response() -> None:
+        assert report.lines() != before
+        assert page.locator("#response .legend").text_content().endswith(chosen)
+
+    eventually(page, response)
     page.keyboard.press("Escape")
     expect(page.locator("#announced")).to_have_text("Nothing selected")
     page.keyboard.press("Tab")
@@ -133,9 +152,13 @@ def test_every_place_that_tab_reaches_shows_that_it_has_the_focus(page):
 def test_a_narrow_screen_or_a_large_zoom_scrolls_one_way(page, width, zoom):
     """1280 px at 400 % are 320 px (WCAG 2.2, 1.4.10)."""
     page.set_viewport_size({"width": width // zoom, "height": 700})
-    page.wait_for_timeout(300)
-    assert page.evaluate(BEYOND) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= width // zoom
+
+    def fits() -> None:
+        assert page.evaluate(FITTING)
+        assert page.evaluate(BEYOND) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width // zoom
+
+    eventually(page, fits)
     assert page.locator("#front-table").bounding_box()["width"] > width // zoom, "the table scrolls in its frame"
 
 
@@ -164,10 +187,14 @@ def test_paper_is_light_and_has_everything_but_what_is_clicked(page):
     page.emulate_media(media="screen", color_scheme="dark")
     page.emulate_media(media="print", color_scheme="dark")
     page.set_viewport_size({"width": 703, "height": 1000})
-    page.wait_for_timeout(500)
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    ink = page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
-    assert set(ink) == {"rgb(0, 0, 0)"}
+
+    def inked() -> None:
+        ink = page.eval_on_selector_all("#projection-0-1 .xtick text", "ts => ts.map(t => t.style.fill)")
+        assert set(ink) == {"rgb(0, 0, 0)"}
+
+    eventually(page, inked)
+    page.wait_for_function(FITTING)
     for hidden in ("nav", "#bar", ".skip", ".choose", ".modebar"):
         assert not page.locator(hidden).first.is_visible()
     assert page.locator("#campaign").is_visible(), "what is folded away is opened"
@@ -199,32 +226,84 @@ def test_figures_have_the_papers_width_when_printed_and_the_screens_again(page, 
     printed = page.evaluate("window.printed")
     assert printed
     assert all(width == own for width, own in printed)
-    page.wait_for_timeout(500)  # plotly waits a tenth of a second
-    assert all(width == own for width, own in page.evaluate(OWN))
-    assert page.evaluate(OWN)[0][1] > printed[0][1]
+
+    def wide_again() -> None:  # plotly waits a tenth of a second
+        assert all(width == own for width, own in page.evaluate(OWN))
+        assert page.evaluate(OWN)[0][1] > printed[0][1]
+
+    eventually(page, wide_again)
 
 
 def test_figures_follow_paper_of_another_width(page):
     page.emulate_media(media="print")
-    page.wait_for_timeout(500)
+    page.wait_for_function(FITTING)
     wide = page.evaluate(OWN)
     page.set_viewport_size({"width": 703, "height": 1000})
-    page.wait_for_timeout(500)
-    narrow = page.evaluate(OWN)
-    assert all(width == own for width, own in narrow)
-    assert narrow[0][1] < wide[0][1]
+
+    def narrow() -> None:
+        found = page.evaluate(OWN)
+        assert all(width == own for width, own in found)
+        assert found[0][1] < wide[0][1]
+
+    eventually(page, narrow)
     assert blank_figures(page) == []
+
+
+def test_the_front_in_three_dimensions_is_printed_in_papers_colours(opened, data, tmp_path: Path):
+    page = opened(render_report(data)).page
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_selector("#front[data-drawn]")
+    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    page.pdf(path=tmp_path / "report.pdf", format="A4")
+    dark, light = page.evaluate(SHADES)
+    assert dark > 100, "text"
+    assert light == 0
+    assert not page.locator("#front .printed").is_visible(), "the screen has the one that turns"
+
+
+def test_a_figure_taller_than_paper_is_made_to_fit_a_page(opened, data):
+    text = render_report(data)
+    assert text.count('"height":520') == 1
+    page = opened(text.replace('"height":520', '"height":2100'), NO_WEBGL).page
+    tall = page.locator("#response")
+    size = "e => [e.getBoundingClientRect().width, e.getBoundingClientRect().height]"
+    wide, high = tall.evaluate(size)
+    assert high == 2100
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 703, "height": 1000})
+    page.wait_for_timeout(500)
+    assert tall.evaluate(size) == pytest.approx([703, 900], abs=1)
+    assert all(width == own for width, own in page.evaluate(OWN))
+    assert blank_figures(page, "#response") == []
+    page.emulate_media(media="screen")
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.wait_for_timeout(500)
+    assert tall.evaluate(size) == [wide, high]
+
+
+def test_the_label_of_a_point_writes_numbers_as_the_page_does(opened, data):
+    front = tuple(replace(d, objectives=(*d.objectives[:2], 1.23456e10)) for d in data.front)
+    some = replace(data, front=front, best=(), choosing=None)
+    found = opened(render_report(some), NO_WEBGL)
+    place = found.page.locator("#projection-0-2")
+    place.evaluate("e => e.scrollIntoView({ block: 'center', behavior: 'instant' })")
+    point = found.dots("0-2")[0]
+    found.page.mouse.move(point["x"] - 2, point["y"])
+    found.page.mouse.move(point["x"], point["y"])
+    expect(place.locator(".hoverlayer")).to_contain_text("source pressure 12346 MPa")
 
 
 def test_a_number_is_written_alike_by_the_page_and_its_script(opened, data):
     sizes = (1.23456e10, 9.87654e12, 2.5e1, 0.0, -3.2e9)
     front = [replace(d, objectives=(*d.objectives[:2], size)) for d, size in zip(data.front, sizes, strict=False)]
     some = replace(data, front=tuple(front), drawn=tuple(range(len(front))), best=(), choosing=None)
-    page = opened(render_report(some), NO_WEBGL).page
+    found = opened(render_report(some), NO_WEBGL)
+    page = found.page
     heading = page.locator("#front-table thead th").all_text_contents()
     column = next(i for i, words in enumerate(heading) if words.strip().startswith("source pressure"))
     for row in page.locator("#front-table tbody tr").all():
         row.click()
+        found.settled()
         written = row.locator("td").nth(column).text_content().strip("✓✗ \n")
         told = page.locator("#details div", has_text="source pressure").locator("dd").inner_text()
         assert re.split(r"\s*[✓✗]", told)[0] == written

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from browsing import NO_WEBGL, quiet
+from browsing import FITTING, NO_WEBGL, eventually, quiet
 from divideropt.analysis import course_of
 from divideropt.analysis.failures import PARTS
 from divideropt.campaign.load import load_campaign, parse_campaign
@@ -362,8 +362,12 @@ def test_bars_are_as_high_as_their_shares(page, data):
 def test_nothing_is_wider_than_the_page(page, width, scheme):
     page.page.emulate_media(color_scheme=scheme)
     page.page.set_viewport_size({"width": width, "height": 900})
-    page.page.wait_for_timeout(1000)  # the figures follow
-    assert page.page.evaluate("document.documentElement.scrollWidth") <= width
+
+    def fits() -> None:
+        assert page.page.evaluate(FITTING)
+        assert page.page.evaluate("document.documentElement.scrollWidth") <= width
+
+    eventually(page.page, fits)
     quiet(page)
 
 

@@ -15,7 +15,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 from ruamel.yaml import YAML
 
-from browsing import NO_WEBGL, PATIENCE, Opened, borne_out, quiet
+from browsing import FITTING, NO_WEBGL, PATIENCE, STILL, Opened, borne_out, eventually, into_view, quiet
 from divideropt.campaign.designs import evaluate_designs, read_designs
 from divideropt.campaign.load import parse_campaign, stored_campaign
 from divideropt.campaign.plan import build_model
@@ -23,7 +23,7 @@ from divideropt.campaign.simulate import chosen_design
 from divideropt.models.divider import PARAMETERS
 from divideropt.models.divider.scenarios import BASE
 from divideropt.report.data import ReportData, read_report
-from divideropt.report.data import _drawn as drawn
+from divideropt.report.drawn import rows_drawn
 from divideropt.report.page import render_report
 from divideropt.report.tried import Tried
 from divideropt.store import Store
@@ -65,6 +65,14 @@ INK = """([from, to]) => {
 """How many pixels between two places [px] have a line on them."""
 
 
+CLICKS = """rows => rows.map((row) => {
+    document.querySelectorAll("#front-table tbody tr")[row].click();
+    const counts = ["parallel", "projection-0-1"].map((id) => document.getElementById(id).dataset.selected);
+    return [...counts, document.getElementById("announced").textContent];
+})"""
+"""Clicks on rows in one go; what lines, points and bar tell in the very moment after each."""
+
+
 @pytest.fixture(scope="module")
 def page_text(data: ReportData) -> str:
     return render_report(data)
@@ -80,6 +88,7 @@ def report(opened: Callable[..., Opened], page_text: str) -> Opened:
 def nothing_selected(report: Opened) -> None:
     report.page.keyboard.press("Escape")
     expect(report.page.locator("#let-go")).to_be_hidden()
+    report.settled()
 
 
 def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) -> None:
@@ -91,22 +100,6 @@ def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) ->
     mouse.up()
 
 
-STILL = """async (selector) => {
-  const place = () => JSON.stringify(document.querySelector(selector).getBoundingClientRect());
-  const frame = () => new Promise((done) => requestAnimationFrame(done));
-  for (let still = 0, last = place(); still < 5; last = place()) {
-    await frame();
-    still = place() === last ? still + 1 : 0;
-  }
-}"""
-"""Waits until an element has not moved for five frames: what follows a selection is drawn later, and moves others."""
-
-
-def into_view(found: Opened, selector: str) -> None:
-    found.page.locator(selector).evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
-    found.page.evaluate(STILL, selector)
-
-
 def brush(found: Opened, axis: int, begin: float, end: float) -> None:
     """Drag along an axis, between shares of it from above."""
     into_view(found, "#parallel")
@@ -115,29 +108,34 @@ def brush(found: Opened, axis: int, begin: float, end: float) -> None:
 
 
 def told(found: Opened, count: int) -> None:
-    """Wait until so many are announced."""
+    """Wait until so many are announced, and every view has followed."""
     expect(found.page.locator("#announced")).to_contain_text(re.compile(rf"^{count or 'No'} design"))
-    found.page.wait_for_timeout(200)
+    found.settled()
 
 
 def followed(found: Opened, count: int) -> None:
-    """Every view tells so many designs from the others."""
+    """Every view tells so many designs from the others, and has come to rest."""
     told(found, count)
-    seen = found.page.evaluate(COUNTS)
-    compared = min(count, 12) if count > 1 else seen["compared"]
-    assert seen == {
-        "lines": count,
-        "projections": [count] * 3,
-        "solid": seen["solid"] if seen["solid"] is None else count,
-        "rows": count,
-        "compared": compared,
-        "address": count,
-    }
-    rows = found.page.locator("#front-table tr[aria-selected=true]").evaluate_all(
-        "rows => rows.map(r => r.dataset.id)"
-    )
-    for pair in ("0-1", "0-2", "1-2"):
-        borne_out(found.dots(pair), rows)
+
+    def views() -> None:
+        seen = found.page.evaluate(COUNTS)
+        compared = min(count, 12) if count > 1 else seen["compared"]
+        assert seen == {
+            "lines": count,
+            "projections": [count] * 3,
+            "solid": seen["solid"] if seen["solid"] is None else count,
+            "rows": count,
+            "compared": compared,
+            "address": count,
+        }
+        rows = found.page.locator("#front-table tr[aria-selected=true]").evaluate_all(
+            "rows => rows.map(r => r.dataset.id)"
+        )
+        for pair in ("0-1", "0-2", "1-2"):
+            borne_out(found.dots(pair), rows)
+
+    eventually(found.page, views)
+    found.page.evaluate(STILL, "#parallel")
 
 
 def upper_half(data: ReportData, axis: int) -> int:
@@ -151,7 +149,11 @@ def test_a_brush_is_followed_by_every_view(report, data):
     count = upper_half(data, 0)
     assert 1 < count < len(data.front)
     followed(report, count)
-    assert len([line for line in report.lines() if line]) == 2 * 3 + 2 * count, "the sets, and each that is selected"
+
+    def lines() -> None:
+        assert len([line for line in report.lines() if line]) == 2 * 3 + 2 * count, "the sets, and each selected"
+
+    eventually(report.page, lines)
     assert f"and {count - 1} other" in report.title()
     quiet(report)
 
@@ -281,6 +283,18 @@ def test_a_row_selects_and_another_joins(report, data):
     assert data.front[4].design_id in report.title()
 
 
+def test_what_was_selected_is_seen_at_once_and_the_last_selection_lasts(report, data):
+    at_once = report.page.evaluate(CLICKS, [2, 4])
+    assert at_once == [
+        ["1", "1", f"1 design of {len(data.front)} selected: {data.front[i].design_id}"] for i in (2, 4)
+    ]
+    followed(report, 1)
+    assert data.front[4].design_id in report.title()
+    (row,) = report.page.locator("#front-table tr[aria-selected=true]").all()
+    assert row.get_attribute("data-id") == data.front[4].design_id
+    quiet(report)
+
+
 def test_a_line_can_be_clicked(report, data):
     into_view(report, "#parallel")
     first, second = (report.page.locator("#parallel .axis .spine").nth(k).bounding_box() for k in (0, 1))
@@ -304,7 +318,11 @@ def test_keys_alone_select_a_design_and_its_response(report, data):
     report.page.keyboard.press(" ")
     followed(report, 1)
     assert data.front[place].design_id in report.title()
-    assert report.lines() != before
+
+    def another() -> None:
+        assert report.lines() != before
+
+    eventually(report.page, another)
 
 
 def test_every_table_of_designs_is_reached_by_tab(report):
@@ -341,6 +359,7 @@ def test_the_address_restores_a_selection(report, data):
     followed(report, 3)
     assert wanted[2] in report.title()
     report.page.keyboard.press("Escape")
+    report.settled()
     assert report.page.evaluate("location.hash") == ""
     quiet(report)
 
@@ -348,8 +367,15 @@ def test_the_address_restores_a_selection(report, data):
 def test_designs_that_the_page_has_not_are_said(report, data):
     report.page.evaluate("text => { location.hash = text; }", f"#select={data.front[1].design_id},nsga2-9/1.2")
     expect(report.page.locator("#announced")).to_contain_text("2 of the 3 designs that the address names are not in")
+    report.settled()
     assert report.page.evaluate(COUNTS)["rows"] == 1
 
+
+ANOTHER_ADDRESS = """(text) => new Promise((done) => {
+    addEventListener("hashchange", () => done(), { once: true });
+    location.hash = text;
+})"""
+"""Gives the page an address, and waits until it has read it."""
 
 HOSTILE_FRAGMENTS = (
     "#select=",
@@ -369,8 +395,7 @@ HOSTILE_FRAGMENTS = (
 def test_a_hostile_address_is_ignored(report, data, fragment):
     report.page.locator("#front-table tbody tr").nth(1).click()
     followed(report, 1)
-    report.page.evaluate("text => { location.hash = text; }", fragment)
-    report.page.wait_for_timeout(100)
+    report.page.evaluate(ANOTHER_ADDRESS, fragment)
     followed(report, 1)
     assert data.front[1].design_id in report.title()
     assert report.page.evaluate("window.hacked ?? null") is None
@@ -449,10 +474,14 @@ def test_another_width_keeps_every_height_and_fits_the_paper(opened, page_text, 
     found.page.emulate_media(media="print")
     found.page.set_viewport_size({"width": 703, "height": 1200})  # A4 within its margins
     expect(found.page.locator("#bar")).to_be_hidden()
-    found.page.wait_for_timeout(500)
-    assert found.page.evaluate(heights) == before
-    assert found.page.locator("#parallel").bounding_box()["width"] == 703
-    assert found.page.locator("#parallel .axis .spine").last.bounding_box()["x"] < 703
+
+    def fitting() -> None:
+        assert found.page.evaluate(FITTING)
+        assert found.page.evaluate(heights) == before
+        assert found.page.locator("#parallel").bounding_box()["width"] == 703
+        assert found.page.locator("#parallel .axis .spine").last.bounding_box()["x"] < 703
+
+    eventually(found.page, fitting)
     quiet(found)
 
 
@@ -522,7 +551,7 @@ def large_page(browser: Browser, data: ReportData, tmp_path: Path) -> Page:
     path = tmp_path / "large.html"
     values = np.abs(random.normal(1.0, 0.5, (20_000, 3))) * data.front[0].objectives
     tried = Tried(values, random.random(20_000) > 0.1, 25_000, 3)
-    text = render_report(replace(data, front=front, drawn=drawn(front), tried=tried))
+    text = render_report(replace(data, front=front, drawn=rows_drawn(front), tried=tried))
     path.write_text(text, encoding="utf-8")
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(path.as_uri(), timeout=PATIENCE)

@@ -279,7 +279,7 @@ def test_a_models_words_are_no_markup(plain_data, opened):
 
 
 def test_nothing_leaves_the_page(page):
-    page.page.wait_for_timeout(200)
+    page.page.wait_for_load_state("networkidle")
     quiet(page)
 
 

@@ -5,20 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from divideropt.analysis.elementary import RESAMPLES, SEED, effects_of, summary_of, ways_of
 from divideropt.analysis.failures import Failures, failures_of, working
-from divideropt.analysis.pick_freeze import NORMAL_95, size_of
+from divideropt.analysis.pick_freeze import size_of
 from divideropt.analysis.sobol import COLUMNS
-from divideropt.analysis.treatments import Treated, Treatment, Undefined, quantity_columns, treated
+from divideropt.analysis.treatments import Treatment, Undefined, quantity_columns, treated
 from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace, Evaluations, Problem
-
-RESAMPLES = 1000
-"""Bootstrap resamples of μ*: ten times SALib's default, since they cost nothing."""
-
-LEAST_EFFECTS = 4
-"""Elementary effects of a variable below which nothing is said of it."""
-
-_SEED = 1
 
 
 @dataclass(frozen=True)
@@ -58,7 +51,7 @@ def morris_study(evaluations: Evaluations, problem: Problem) -> MorrisStudy:
     trajectories = len(evaluations) // length
     left_over = len(evaluations) - trajectories * length
     evaluations = evaluations.part(0, trajectories * length)
-    ways = _ways(evaluations.designs, problem.space)
+    ways = ways_of(evaluations.designs, problem.space)
     ok = working(evaluations)
     rows: list[pd.DataFrame] = []
     undefined: list[Undefined] = []
@@ -74,45 +67,15 @@ def morris_study(evaluations: Evaluations, problem: Problem) -> MorrisStudy:
                 continue
             size = size_of(item.values[item.kept])
             scaled = replace(item, values=item.values / size)
-            found = _effects(scaled, ways)
+            found = effects_of(scaled, ways)
             if item.kept.all():
                 summary = size * _by_salib(evaluations.designs, scaled.values, problem.space, ways)
             else:
-                summary = size * np.array([_summary(column[np.isfinite(column)]) for column in found.T])
+                summary = size * np.array([summary_of(column[np.isfinite(column)]) for column in found.T])
             rows.append(_rows(name, item.treatment, summary, np.isfinite(found).mean(axis=0), problem, trajectories))
     table = pd.concat(rows, ignore_index=True) if rows else pd.DataFrame(columns=list(COLUMNS))
     failures = failures_of(evaluations, problem.space)
     return MorrisStudy(table, tuple(undefined), failures, trajectories, left_over)
-
-
-def _ways(designs: FloatArray, space: DesignSpace) -> FloatArray:
-    """Steps of the trajectories in parts of the variables' ranges, shape (trajectories, d, d): step, variable."""
-    if not len(designs):
-        raise ValueError("no trajectory is complete; sample more")
-    shares = ((designs - space.lower) / (space.upper - space.lower)).reshape(-1, len(space) + 1, len(space))
-    ways = np.diff(shares, axis=1)
-    if (np.count_nonzero(ways, axis=1) != 1).any() or (np.count_nonzero(ways, axis=2) != 1).any():
-        raise ValueError("a trajectory does not move each variable once, one a step: no Morris sample")
-    return np.asarray(ways)
-
-
-def _effects(item: Treated, ways: FloatArray) -> FloatArray:
-    """Elementary effects by step and variable, NaN where an end of the step does not count, shape (r, d)."""
-    values = np.where(item.kept, item.values, np.nan).reshape(len(ways), -1)
-    moved = np.abs(ways).argmax(axis=2)
-    effects = np.diff(values, axis=1) / np.take_along_axis(ways, moved[:, :, None], axis=2)[:, :, 0]
-    found = np.empty_like(effects)
-    np.put_along_axis(found, moved, effects, axis=1)
-    return found
-
-
-def _summary(effects: FloatArray) -> tuple[float, float, float, float]:
-    """μ, μ*, σ, and half the width of the interval of μ*; NaN of too few effects."""
-    if len(effects) < LEAST_EFFECTS:
-        return np.nan, np.nan, np.nan, np.nan
-    drawn = np.random.default_rng(_SEED).integers(len(effects), size=(RESAMPLES, len(effects)))
-    half = NORMAL_95 * np.abs(effects)[drawn].mean(axis=1).std(ddof=1)
-    return float(effects.mean()), float(np.abs(effects).mean()), float(effects.std(ddof=1)), float(half)
 
 
 def _by_salib(designs: FloatArray, values: FloatArray, space: DesignSpace, ways: FloatArray) -> FloatArray:
@@ -126,7 +89,7 @@ def _by_salib(designs: FloatArray, values: FloatArray, space: DesignSpace, ways:
         "names": list(space.names),
         "bounds": np.column_stack([space.lower, space.upper]).tolist(),
     }
-    found = analyze(description, designs, values, num_levels=levels, num_resamples=RESAMPLES, seed=_SEED)
+    found = analyze(description, designs, values, num_levels=levels, num_resamples=RESAMPLES, seed=SEED)
     return np.column_stack([np.asarray(found[k], float) for k in ("mu", "mu_star", "sigma", "mu_star_conf")])
 
 

@@ -1,22 +1,19 @@
 """Sobol indices of one quantity from a pick-freeze sample, and their bootstrap intervals.
 
-A sample's blocks are those of `SALib.sample.sobol`: A, AB_1 … AB_d, [BA_1 … BA_d,] B. Design AB_i is A with variable
-i taken from B, and BA_i is B with variable i taken from A.
-
 An index is a function of means over the blocks, so a bootstrap needs the blocks' terms once and then only sums of
 them, weighted by how often a block was drawn: one product of matrices. SALib draws the same blocks, but copies every
 value for every resample.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from divideropt.analysis.blocks import Blocks
+from divideropt.analysis.saltelli import Combine, saltelli_terms
 from divideropt.models.base import FloatArray
 
 RESAMPLES = 100
@@ -32,51 +29,6 @@ LEAST_EXPONENT = -1022
 """Of the smallest power of two that a float holds with all its digits."""
 
 Bools = NDArray[np.bool_]
-Combine = Callable[[FloatArray], FloatArray]
-
-
-@dataclass(frozen=True)
-class Blocks:
-    """How a pick-freeze sample is laid out.
-
-    Attributes:
-        variables: Their number d.
-        second_order: Whether a block has BA_1 … BA_d, too.
-    """
-
-    variables: int
-    second_order: bool
-
-    @property
-    def size(self) -> int:
-        """Designs of a block."""
-        return (2 if self.second_order else 1) * self.variables + 2
-
-    @property
-    def keys(self) -> list[tuple[str, int, int | None]]:
-        """The indices in their order: kind, variable, and of a second-order one the other variable."""
-        single: list[tuple[str, int, int | None]] = [
-            (k, i, None) for k in ("S1", "ST") for i in range(self.variables)
-        ]
-        return single + [("S2", i, j) for i, j in self.pairs]
-
-    @property
-    def pairs(self) -> list[tuple[int, int]]:
-        """The pairs of variables that have a second-order index."""
-        return list(combinations(range(self.variables), 2)) if self.second_order else []
-
-    def ab(self, variable: int) -> int:
-        """Place of AB_i in a block."""
-        return 1 + variable
-
-    def ba(self, variable: int) -> int:
-        """Place of BA_i in a block."""
-        return 1 + self.variables + variable
-
-    @property
-    def b(self) -> int:
-        """Place of B in a block; A is the first."""
-        return self.size - 1
 
 
 @dataclass(frozen=True)
@@ -92,26 +44,6 @@ class Estimate:
     values: FloatArray
     half: FloatArray
     used: FloatArray
-
-
-def blocks_of(designs: FloatArray) -> Blocks:
-    """Recognise the layout of a sample, shape (n, d), n at least one block.
-
-    Raises:
-        ValueError: It is no pick-freeze sample.
-    """
-    d = designs.shape[1]
-    second = len(designs) > d + 1 and bool((designs[d + 1] == designs[0]).any())
-    blocks = Blocks(d, second)
-    if len(designs) < blocks.size:
-        raise ValueError(f"{len(designs)} designs are less than one block, of {blocks.size}; sample more")
-    first = designs[: blocks.size]
-    for i in range(d):
-        expected = first[0].copy()
-        expected[i] = first[blocks.b, i]
-        if (first[blocks.ab(i)] != expected).any():
-            raise ValueError(f"design {blocks.ab(i)} is not the first with variable {i} of another: no Sobol sample")
-    return blocks
 
 
 def whole(values: FloatArray, blocks: Blocks) -> Estimate:
@@ -136,7 +68,7 @@ def whole(values: FloatArray, blocks: Blocks) -> Estimate:
     description = {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
     found = analyze(description, scaled.ravel(), calc_second_order=blocks.second_order, num_resamples=2, seed=1)
     indices = np.array([*found["S1"], *found["ST"], *(found["S2"][i, j] for i, j in blocks.pairs)])
-    terms, combine = _saltelli(scaled, blocks)
+    terms, combine = saltelli_terms(scaled, blocks)
     return Estimate(indices, _half_widths(terms, combine), np.ones(len(indices)))
 
 
@@ -190,29 +122,6 @@ def size_of(values: FloatArray) -> float:
     """
     largest = float(np.abs(values).max())
     return math.ldexp(1.0, max(math.frexp(largest)[1] - 1, LEAST_EXPONENT)) if largest > 0.0 else 1.0
-
-
-def _saltelli(y: FloatArray, blocks: Blocks) -> tuple[FloatArray, Combine]:
-    """The terms of SALib's estimators, shape (n, c), and what makes indices of their means."""
-    d, a, b = blocks.variables, y[:, 0], y[:, blocks.b]
-    ab = y[:, 1 : 1 + d]
-    terms = [
-        (a + b)[:, None] / 2,
-        (a**2 + b**2)[:, None] / 2,
-        b[:, None] * (ab - a[:, None]),
-        (a[:, None] - ab) ** 2 / 2,
-    ]
-    terms += [(y[:, blocks.ba(i)] * y[:, blocks.ab(j)] - a * b)[:, None] for i, j in blocks.pairs]
-
-    def combine(means: FloatArray) -> FloatArray:
-        variance = (means[:, 1] - means[:, 0] ** 2)[:, None]
-        with np.errstate(divide="ignore", invalid="ignore"):  # a resample in which nothing varies has no index
-            shares = means[:, 2:] / variance
-        first, total, joint = shares[:, :d], shares[:, d : 2 * d], shares[:, 2 * d :]
-        second = [joint[:, k] - first[:, i] - first[:, j] for k, (i, j) in enumerate(blocks.pairs)]
-        return np.column_stack([first, total, *second])
-
-    return np.concatenate(terms, axis=1), combine
 
 
 def _pair_groups(blocks: Blocks) -> list[list[tuple[int, int]]]:

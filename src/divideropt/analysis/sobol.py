@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from divideropt.analysis.blocks import Blocks, blocks_of
 from divideropt.analysis.failures import Failures, failures_of, working
-from divideropt.analysis.pick_freeze import Blocks, Estimate, blocks_of, by_pairs, whole
+from divideropt.analysis.pick_freeze import Estimate, by_pairs, whole
 from divideropt.analysis.treatments import Treated, Treatment, Undefined, quantity_columns, treated, worst_sides
 from divideropt.problem import Evaluations, Problem
 

@@ -20,8 +20,8 @@ from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.mishaps import Mishaps
 from divideropt.campaign.parentage import end_with_parent
 from divideropt.campaign.plan import Run, build_problem, dividers, reference_of
-from divideropt.campaign.progress import Reporter
 from divideropt.campaign.reference import reference_problem
+from divideropt.campaign.standing import Reporter
 from divideropt.errors import DivideroptError
 from divideropt.models.base import FloatArray
 from divideropt.problem import Evaluations, Problem

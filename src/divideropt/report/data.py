@@ -3,7 +3,6 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import (
@@ -15,7 +14,6 @@ from divideropt.analysis import (
     compare,
     convergence,
     marked,
-    spread,
     summarise,
 )
 from divideropt.analysis.breaches import all_breaches
@@ -33,6 +31,7 @@ from divideropt.report.choosing import Choosing, choosing_of
 from divideropt.report.closely import shown_closely
 from divideropt.report.convergence import Track, tracks_of
 from divideropt.report.cost import Cost, read_cost
+from divideropt.report.drawn import rows_drawn
 from divideropt.report.facts import (
     ObjectiveFacts,
     VariableFacts,
@@ -55,12 +54,6 @@ from divideropt.report.standing import front_of, state_of
 from divideropt.report.study_summary import StudySummary, study_summary
 from divideropt.report.tried import Tried, read_tried
 from divideropt.store import Store, TableSchema
-
-MOST_DRAWN = 10_000
-"""Designs of the front that the figures draw: beyond, the page grows by its ids, and brushes get slow."""
-
-MOST_ROWS = 1000
-"""Designs of the front in the page's table."""
 
 COMPANION_NOTE = (
     "The companion without scenarios and uncertainty, which the campaign asks for (`nominal: true`), has not ended: "
@@ -216,7 +209,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         front,
         convergence(table),
         campaign.verification.tolerance,
-        _drawn(front),
+        rows_drawn(front),
         read_tried(logs),
         best,
         _comparison(facts, logs, problem, reference, {run.name for run in active}),
@@ -281,12 +274,3 @@ def _best(facts: Sequence[RunFacts], logs: Mapping[str, Summary], read: Reader) 
         if best is not None and (run.strategy not in found or best.value < found[run.strategy].value):
             found[run.strategy] = best
     return tuple(read(best.design)[0] for best in found.values())
-
-
-def _drawn(front: Sequence[Design]) -> tuple[int, ...]:
-    """All rows, or else those of the table, the extremes, and an even spread of the rest."""
-    if len(front) <= MOST_DRAWN:
-        return tuple(range(len(front)))
-    objectives = np.array([design.objectives for design in front])
-    first = [*range(MOST_ROWS), *(int(row) for row in objectives.argmin(axis=0))]
-    return tuple(sorted(spread(objectives, first, MOST_DRAWN)))

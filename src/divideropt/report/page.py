@@ -15,10 +15,11 @@ from divideropt.report.convergence_figure import EARLY, convergence_figure
 from divideropt.report.convergence_tables import convergence_table, unequal
 from divideropt.report.cost_figure import FRONTS, cost_figures, kind_of
 from divideropt.report.cost_tables import bests_table, reasons_table, volumes_table
-from divideropt.report.data import MOST_ROWS, ReportData, read_report
+from divideropt.report.data import ReportData, read_report
 from divideropt.report.decision_tables import choosing_table, lacking, rank_table, strategies_table
 from divideropt.report.display import Axis, brief, grouped, number, rounded, share
 from divideropt.report.document import drawn, render, save
+from divideropt.report.drawn import MOST_ROWS
 from divideropt.report.failing import FEW
 from divideropt.report.failing_tables import along_table, bounds_table
 from divideropt.report.figures import front_3d, projections, residuals

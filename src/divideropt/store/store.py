@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from copy import copy
 from datetime import UTC, datetime
-from difflib import get_close_matches
 from pathlib import Path
 
 import pyarrow as pa
@@ -23,6 +22,7 @@ from divideropt.store.files import (
 from divideropt.store.fingerprint import keep_fingerprint, read_fingerprints
 from divideropt.store.locks import held
 from divideropt.store.log import RunLog
+from divideropt.store.missing import instead_of
 from divideropt.store.owner import Owner, holder
 from divideropt.store.parts import Parts
 from divideropt.store.schema import TableSchema
@@ -30,9 +30,6 @@ from divideropt.store.tables import check_replaceable, read_table, write_table
 
 STUDIES = "sensitivity"
 """Where a campaign's store has its sensitivity studies, each a store in a folder of its own."""
-
-FEW = 10
-"""So many stores are named where one was looked for in their folder."""
 
 LOCK_PATIENCE = 10.0
 """How long a run's log is waited for [s]: a worker outlives a killed parent by less."""
@@ -98,20 +95,8 @@ class Store:
             StoreError: It cannot be read.
         """
         if not self.exists:
-            raise UsageError(f"{self.folder}: no store there ({self._instead()}")
+            raise UsageError(f"{self.folder}: no store there ({instead_of(self.folder)}")
         return read_campaign(self.campaign_path)
-
-    def _instead(self) -> str:
-        """Say why the folder is no store, and what may have been meant."""
-        if self.folder.is_file():
-            return "it is a file); name the folder that `divideropt run` has made of a campaign: results/NAME"
-        inside = sorted(path.parent.name for path in self.folder.glob("*/campaign.yaml"))
-        if inside:
-            return f"no campaign.yaml), but in it: {', '.join(inside[:FEW])}; name one of these"
-        beside = [path.parent.name for path in self.folder.parent.glob("*/campaign.yaml")]
-        meant = get_close_matches(self.folder.name, beside, n=1)
-        hint = f"did you mean {self.folder.with_name(meant[0])}?" if meant else "name the folder of a store"
-        return f"no campaign.yaml); {hint}"
 
     def write_campaign(self, text: str) -> None:
         """Replace the campaign as resolved.
