@@ -219,7 +219,15 @@ def test_a_spread_begins_with_what_is_asked_and_repeats_nothing():
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.0, "0"), (9.9996, "10.00"), (-0.20461, "−0.2046"), (12345.0, "12345"), (2.5e-7, "2.500·10⁻⁷")],
+    [
+        (0.0, "0"),
+        (9.9996, "10.00"),
+        (-0.20461, "−0.2046"),
+        (12345.0, "12345"),
+        (2.5e-7, "250.0·10⁻⁹"),
+        (-1.23456e7, "−12.35·10⁶"),
+        (9.99996e-7, "1.000·10⁻⁶"),
+    ],
 )
 def test_numbers_have_four_digits(value, text):
     assert number(value) == text
@@ -233,6 +241,20 @@ def test_units_are_those_people_use():
     assert shown_as("furlong", [1.0]).unit == "furlong"
     axis = axis_of(Quantity("dynamic_error", "m^3", "E_CUDY, (3.10)", "", 1e-6, signed=True), [1e-6])
     assert axis.label == "dynamic error |E_CUDY| [mL]"
+    assert (
+        axis_of(Quantity("dynamic_error_abs", "m^3", "∫|·| of (3.10)", "", 1e-6), []).label
+        == "dynamic error abs [mL]"
+    )
+    assert axis_of(Quantity("steady_state_error", "%", "(3.6)", "", 1.0), []).label == "steady state error [%]"
+
+
+def test_one_quantity_has_one_unit_whatever_values_a_table_has_of_it():
+    pressure, size = Quantity("p", "Pa", "", "", 1e7), Quantity("x", "m", "", "", 1e-3)
+    assert [axis_of(pressure, values).shown.unit for values in ((), [2e7], [9e8], [0.0])] == ["MPa"] * 4
+    assert [axis_of(size, [value]).shown.unit for value in (5e-5, 1e-3, 2.0)] == ["mm"] * 3
+    assert [axis_of(size, [value]).shown.unit for value in (5e-6, 20.0)] == ["µm", "m"], "where its own says nothing"
+    modulus = Parameter("bulk_modulus", "Pa", "", "", 1e9, Domain(0.0, 1e10))
+    assert [axis_of(modulus, [value]).short(value) for value in (2e8, 1.2e9)] == ["0.2 GPa", "1.2 GPa"]
 
 
 def test_a_response_page_wants_a_value_a_time():
@@ -295,7 +317,7 @@ def test_a_cell_says_what_is_known_of_a_residual(data):
     first = data.front[0]
     for kkt, found, text, order in (
         (Kkt.COMPUTED, Optimality(0.01234, 1e-5), "0.012", "0.01234"),
-        (Kkt.COMPUTED, Optimality(1e-9, 1e-5), "< 1.0·10⁻⁵", "1e-09"),
+        (Kkt.COMPUTED, Optimality(1e-9, 1e-5), "< 10·10⁻⁶", "1e-09"),
         (Kkt.NOT_DEFINED, None, "not defined", LAST),
         (Kkt.NOT_COMPUTED, None, "–", LAST),
     ):

@@ -187,7 +187,8 @@ def test_effects_are_told_in_the_quantitys_unit(tmp_path):
     store = studied(DIVIDER.read_text(), tmp_path / "study", "morris", 10)
     text = study_text(read_study(store))
     assert "magnitude of dynamic error [mL]: mu_star and sigma" in text
-    assert "source pressure [MPa]" in text or "source pressure [GPa]" in text
+    assert "source pressure [MPa]" in text
+    assert "GPa" not in text
 
 
 def test_an_objective_without_numbers_says_why(tmp_path):
@@ -276,6 +277,15 @@ def test_an_unfinished_study_says_so(tmp_path):
     data = read_study(store)
     assert data.notes == ("Not finished: 512 of 1024 designs are simulated.",)
     assert data.units == 64
+
+
+def test_the_report_of_a_study_is_its_page(tmp_path):
+    store = studied(ISHIGAMI, tmp_path / "study", "morris", 10)
+    page = write_study(store).read_text("utf-8")
+    assert "Elementary effects" in page
+    assert write_report(store, tmp_path / "again.html").read_text("utf-8") == page
+    write_report(store)
+    assert (store.folder / "report.html").read_text("utf-8") == page
 
 
 def test_what_is_no_study_is_refused(tmp_path):

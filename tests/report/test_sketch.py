@@ -22,7 +22,7 @@ from divideropt.models.divider import PARAMETERS
 from divideropt.models.uncertain import Source, under_uncertainty
 from divideropt.report.data import ReportData, read_report
 from divideropt.report.page import render_report
-from divideropt.report.sheets import MOST_SIMULATED, read_sheets
+from divideropt.report.sheets import read_sheets
 from divideropt.report.sketch_layout import Drawing, lay_out
 from divideropt.report.sketch_svg import draw
 from divideropt.report.sketches import sketch_payload
@@ -65,15 +65,22 @@ def variables_of(data: ReportData) -> np.ndarray:
 
 
 def laid_out(data: ReportData) -> Drawing:
-    """The drawing as on the page: for every design that it has."""
+    """The drawing as on the page: for every design that it has, and as rounded."""
     candidates = [candidate.design for candidate in data.choosing.candidates] if data.choosing else []
     variables = np.array([design.variables for design in (*data.front, *data.best, *candidates)])
-    return lay_out(data.sketches.model.sketch, data.sketches.model.dimensions, data.sketches.measured(variables))
+    columns = {
+        name: np.concatenate([column, [valve.dimensions[name] for valve in data.sheets.valves]])
+        for name, column in data.sketches.measured(variables).items()
+    }
+    return lay_out(data.sketches.model.sketch, data.sketches.model.dimensions, columns)
 
 
-def pick(report: Opened, *ids: str) -> None:
+def pick(report: Opened, *ids: str, step: str = "0") -> None:
+    """Select designs, the first to be shown closely, as they are or rounded to a step."""
+    if report.count("#step"):
+        report.page.locator("#step").select_option(step)
     report.page.evaluate("(hash) => { location.hash = hash; }", f"#select={','.join(ids)}&show={ids[0]}")
-    expect(report.page.locator("#sketch-title")).to_contain_text(ids[0])
+    expect(report.page.locator("#sketch-said")).to_contain_text(ids[0])
 
 
 def extremes(known: dict[str, dict[str, float]], name: str) -> tuple[str, str]:
@@ -132,12 +139,13 @@ def test_page_and_file_draw_the_same(report: Opened, data: ReportData, known) ->
 def test_every_design_that_can_be_selected_has_a_sketch(page_text: str, data: ReportData, known) -> None:
     payload = json.loads(re.search(r'id="report-data">(.*?)</script>', page_text, re.DOTALL)[1])
     columns, ids = payload["sketch"]["columns"], payload["designs"]["ids"]
+    rows = len(ids) + len(data.sheets.valves)
     assert {design.design_id for design in (*data.front, *data.best)} <= set(ids)
     for column in columns:
-        assert isinstance(column, float | int) or "of" in column or len(column) == len(ids)
-    assert sum(isinstance(column, list) for column in columns) <= 8
+        assert isinstance(column, float | int) or "of" in column or len(column) == rows
+    assert sum(isinstance(column, list) for column in columns) <= 9
     place = payload["sketch"]["names"].index("groove width")
-    for design, width in zip(ids, columns[place], strict=True):
+    for design, width in zip(ids, columns[place][: len(ids)], strict=True):
         if design in known:
             assert width == pytest.approx(known[design]["groove_width"] * 1e3, rel=1e-3)
 
@@ -157,8 +165,7 @@ def test_the_sheet_is_that_of_the_command_and_its_files_can_be_read(
     report: Opened, data: ReportData, store: Store
 ) -> None:
     design = next(iter(data.sheets.designs))
-    pick(report, design)
-    report.page.locator("#step").select_option("2")
+    pick(report, design, step="2")
     found = sheet(store.folder, design, step="0.1 mm")
     with report.page.expect_download() as saved:
         report.page.locator("#sheet-csv").click()
@@ -192,12 +199,76 @@ def test_another_step_is_another_column_and_the_command_says_it(report: Opened, 
         assert report.page.locator("#sheet-command").text_content() == f"divideropt sheet . {design} --step '{step}'"
     assert said[0] != said[1]
     assert "goals met" in report.page.locator("#sheet-said").text_content()
-    without = (
-        next(d.design_id for d in data.front if d.design_id not in data.sheets.designs)
-        if len(data.front) > len(data.sheets.designs)
-        else None
+
+
+def test_the_drawing_is_that_of_the_dimensions_beside_it_and_says_the_step(
+    report: Opened, data: ReportData, store: Store
+) -> None:
+    design = next(iter(data.sheets.designs))
+    drawn = {}
+    for place, step in (("0", None), ("2", "0.1 mm"), ("3", "0.5 mm")):
+        pick(report, design, step=place)
+        found = sheet(store.folder, design, step=step)
+        sizes = (found.rounded or found.exact).dimensions
+        how = "as it is" if step is None else f"rounded to {step}"
+        expect(report.page.locator("#sketch-said")).to_have_text(f"Design {design}, drawn to scale, {how}.")
+        labels = report.page.evaluate(LENGTHS)
+        for symbol, name in (("2r", "spool_diameter"), ("b", "groove_width"), ("2rv", "port_diameter")):
+            said = next(text for text in labels if text.startswith(f"{symbol} = "))
+            length = float(said.removeprefix(f"{symbol} = ").removesuffix(" mm"))
+            assert length == pytest.approx(sizes[name] * 1e3, rel=2e-4)
+        width = report.page.evaluate(BOXES)[4][1] / scale(report)
+        assert width == pytest.approx(sizes["spool_diameter"], rel=2e-3)
+        drawn[place] = report.page.locator("#sketch-drawn").inner_html()
+        titles = report.page.locator("#sheet-lines thead th").all_text_contents()
+        assert titles == 2 * (["as it is"] if step is None else ["as it is", "rounded"])
+    assert len(set(drawn.values())) == 3
+    pick(report, design, step="0")
+    assert report.page.locator("#sheet-command").text_content() == f"divideropt sheet . {design}"
+    with report.page.expect_download() as saved:
+        report.page.locator("#sheet-csv").click()
+    assert list(pd.read_csv(saved.value.path()).columns) == ["section", "name", "symbol", "unit", "exact"]
+    pick(report, design, step="3")
+    with report.page.expect_download() as saved:
+        report.page.locator("#sheet-svg").click()
+    texts = ET.parse(saved.value.path()).getroot().iter("{http://www.w3.org/2000/svg}text")
+    words = ["".join(text.itertext()) for text in texts]
+    assert f"Design {design} of small, drawn rounded to 0.5 mm" in words
+    assert f"2r = {sizes['spool_diameter'] * 1e3:.4g} mm" in words, "the last of those above"
+
+
+def test_a_design_without_a_sheet_is_drawn_as_it_is_and_says_so(
+    opened: Callable[..., Opened], data: ReportData
+) -> None:
+    first, *others = data.sheets.designs
+    fewer = replace(data.sheets, designs={name: data.sheets.designs[name] for name in others})
+    found = opened(render_report(replace(data, sheets=fewer)), NO_WEBGL)
+    pick(found, first, step="2")
+    expect(found.page.locator("#sketch-said")).to_contain_text("since the page has no rounded dimensions of it")
+    expect(found.page.locator("#sheet-said")).to_contain_text(f"The page holds no sheet of {first}")
+    assert found.page.locator("#sheet-command").text_content() == f"divideropt sheet . {first} --step '0.1 mm'"
+    quiet(found)
+
+
+def test_what_is_not_simulated_has_its_dimensions_and_says_so(
+    opened: Callable[..., Opened], data: ReportData
+) -> None:
+    design, row = next(iter(data.sheets.designs.items()))
+    columns = (*row[:2], replace(row[2], judged=None), row[3])
+    some = replace(data.sheets, designs={**data.sheets.designs, design: columns}, weight=65)
+    found = opened(render_report(replace(data, sheets=some)), NO_WEBGL)
+    pick(found, design, step="2")
+    expect(found.page.locator("#sheet-said")).to_contain_text("Rounded to 0.1 mm: simulated not in this page")
+    cells = found.page.locator("#sheet-lines tbody tr").all_inner_texts()
+    assert next(cell for cell in cells if cell.startswith("spool diameter")).split("\t")[3] == (
+        f"{row[2].dimensions['spool_diameter'] * 1e3:.6g}"
     )
-    assert without is None or without not in data.sheets.designs
+    assert next(cell for cell in cells if cell.startswith("steady state error")).split("\t")[3] == "–"
+    count = len(some.designs)
+    expect(found.page.locator("#sheet-count")).to_contain_text(
+        f"to 0.01 mm of {count}, to 0.1 mm of {count - 1} and to 0.5 mm of {count}: a design takes 65 simulations"
+    )
+    quiet(found)
 
 
 def test_a_model_without_a_sketch_has_no_section(spheres: Callable[..., Store]) -> None:
@@ -230,8 +301,12 @@ def test_words_of_a_model_are_text_and_a_step_that_makes_no_valve_is_said(
     opened: Callable[..., Opened], data: ReportData
 ) -> None:
     hostile = replace(data.sketches, model=Hostile(data.sketches.model))
-    design, sheets = next(iter(data.sheets.designs.items()))
-    broken = {**data.sheets.designs, design: (*sheets[:3], HOSTILE)}
+    design = next(iter(data.sheets.designs))
+    named = {
+        name: [replace(column, dimensions={**column.dimensions, HOSTILE: 0.01}) for column in row]
+        for name, row in data.sheets.designs.items()
+    }
+    broken = {**named, design: (*named[design][:3], HOSTILE)}
     changed = replace(
         data,
         sketches=hostile,
@@ -245,9 +320,9 @@ def test_words_of_a_model_are_text_and_a_step_that_makes_no_valve_is_said(
     ET.fromstring(
         f"<svg>{draw(lay_out(hostile.model.sketch, hostile.model.dimensions, columns), {HOSTILE: 0.01})}</svg>"
     )
-    pick(found, design)
-    found.page.locator("#step").select_option("3")
+    pick(found, design, step="3")
     expect(found.page.locator("#sheet-said")).to_contain_text(f"there is no such valve: {HOSTILE}")
+    expect(found.page.locator("#sketch-said")).to_contain_text("since rounded to 0.5 mm there is no such valve")
     quiet(found)
 
 
@@ -269,14 +344,24 @@ def test_a_design_without_a_variable_has_no_drawing(data: ReportData) -> None:
     assert sketch_payload(data.sketches, variables[1:2]) is None
 
 
-def test_sheets_cost_no_more_than_a_few_simulations(store: Store, data: ReportData) -> None:
+def test_sheets_cost_no_more_than_a_few_simulations(
+    store: Store, data: ReportData, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("divideropt.report.sheets.MOST_SIMULATED", 60)
     problem = build_problem(stored_campaign(store))
-    many = [data.front[0]] * (MOST_SIMULATED // 4 + 10)
-    assert len(read_sheets(problem, many[:3]).designs) == 1
-    named = [replace(design, design_id=f"nsga2-1/{i}") for i, design in enumerate(many)]
-    assert len(read_sheets(problem, named).designs) == MOST_SIMULATED // 4
+    designs = [replace(data.front[0], design_id=f"nsga2-1/{i}") for i in range(9)]
+    known = problem.simulate(np.array([design.variables for design in designs]))
+    found = read_sheets(problem, designs, known)
+    assert (found.simulated, found.weight) == ((9, 9, 9), 1)
     sources = (Source("density", Uniform(800.0, 900.0)),)
-    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED // 8 - 1, 1))
-    assert len(read_sheets(uncertain, named).designs) == 2
-    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, MOST_SIMULATED, 1))
-    assert read_sheets(uncertain, named) is None
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, 4, 1))
+    known = uncertain.simulate(np.array([design.variables for design in designs]))
+    found = read_sheets(uncertain, designs, known)
+    assert (found.simulated, found.weight) == ((2, 9, 1), 5), "12 rounded designs, to 0.1 mm first"
+    assert list(found.designs) == [design.design_id for design in designs]
+    assert all(not isinstance(column, str) for row in found.designs.values() for column in row)
+    uncertain = replace(problem, model=under_uncertainty(problem.model, sources, 64, 1))
+    found = read_sheets(uncertain, designs[:1], known.part(0, 1))
+    assert found.simulated == (0, 0, 0)
+    assert found.designs["nsga2-1/0"][2].dimensions["spool_diameter"] > 0.0
+    assert read_sheets(problem, [], known.part(0, 0)) is None

@@ -12,7 +12,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 import numpy as np
 
 from divideropt.models import Verdict
-from divideropt.models.base import VALIDITY, FloatArray
+from divideropt.models.base import VALIDITY
 from divideropt.models.dimensions import Dimensioned
 from divideropt.problem import Evaluations, Problem, simulate
 from divideropt.problem.criteria import Values
@@ -69,7 +69,7 @@ def rounded_design(
     Raises:
         ValueError: A dimension would be 0, or a parameter out of its domain, in a sentence.
     """
-    row = dict(zip(model.dimensions, model.measured(_row(model, parameters))[0].tolist(), strict=True))
+    row = dimensions_of(model, [parameters])[0]
     exact = {name: row[name] for name in rounded_names(problem, model) if row[name] != 0.0}
     rounded = {name: _rounded(value, step) for name, value in exact.items()}
     if not all(rounded.values()):
@@ -109,17 +109,30 @@ def judge(problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, f
         return []
     names = list(problem.model.parameters)
     rows = np.array([[design[name] for name in names] for design in designs])
-    quantities, verdicts = simulate(problem.model, problem.fixed, names, rows)
-    told = problem.tell(Evaluations(rows, quantities, verdicts))
+    return judged(problem, model, designs, Evaluations(rows, *simulate(problem.model, problem.fixed, names, rows)))
+
+
+def judged(
+    problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, float]], found: Evaluations
+) -> list[Judged]:
+    """Judge designs that have been simulated.
+
+    Args:
+        problem: The problem.
+        model: Whose dimensions.
+        designs: Every parameter of each by name.
+        found: What came out of them, in their order.
+    """
+    quantities, verdicts = found.quantities, found.verdicts
+    told = problem.tell(found)
     known = list(problem.model.quantities)
     objectives = Values(known, [o.quantity for o in problem.objectives]).of(quantities)
     constraints = Values(known, [c.quantity for c in problem.constraints]).of(quantities)
-    dimensions = model.measured(rows)
-    valid = quantities[:, known.index(VALIDITY)].tolist() if VALIDITY in known else [np.nan] * len(rows)
+    valid = quantities[:, known.index(VALIDITY)].tolist() if VALIDITY in known else [np.nan] * len(designs)
     return [
         Judged(
             designs[i],
-            dict(zip(model.dimensions, dimensions[i].tolist(), strict=True)),
+            dimensions,
             tuple(objectives[i].tolist()),
             tuple(constraints[i].tolist()),
             verdicts[i],
@@ -130,12 +143,15 @@ def judge(problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, f
             ),
             None if np.isnan(valid[i]) else bool(valid[i]),
         )
-        for i in range(len(designs))
+        for i, dimensions in enumerate(dimensions_of(model, designs))
     ]
 
 
-def _row(model: Dimensioned, parameters: Mapping[str, float]) -> FloatArray:
-    return np.array([[parameters[name] for name in model.parameters]])
+def dimensions_of(model: Dimensioned, designs: Sequence[Mapping[str, float]]) -> list[dict[str, float]]:
+    """Measure designs, every parameter of each by name: every dimension of each by name."""
+    rows = np.array([[design[name] for name in model.parameters] for design in designs])
+    measured = model.measured(rows.reshape(len(designs), len(model.parameters)))
+    return [dict(zip(model.dimensions, row, strict=True)) for row in measured.tolist()]
 
 
 def _rounded(value: float, step: float) -> float:

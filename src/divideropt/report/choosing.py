@@ -10,6 +10,9 @@ from divideropt.models.base import FloatArray
 from divideropt.problem import Objective
 from divideropt.report.front import Design
 
+VOUCHED = "best within validity"
+"""Why a design is worth a look that the model vouches for, where it does not for all."""
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -25,7 +28,7 @@ class Choosing:
     """What there is to choose from.
 
     Attributes:
-        candidates: The designs worth a look: knees, then what the goals say.
+        candidates: The designs worth a look: knees, then what the goals say, then what validity says.
         considered: How many designs there are within the reference point, as far as there is one.
         knees: How many knees there are among the candidates.
         goals: Whether an objective has a goal.
@@ -49,7 +52,7 @@ def choosing_of(
     """Look through a front.
 
     Args:
-        front: Its designs.
+        front: Its designs, the best by goal attainment first.
         objectives: With goals or not.
         reference: The reference point, shape (k,), or None.
 
@@ -61,9 +64,12 @@ def choosing_of(
     values = np.array([design.objectives for design in front])
     rows = np.flatnonzero(region(values, reference))
     found = choose(values[rows], objectives)
+    reasons = dict(found.reasons)
+    vouched = _vouched([front[row] for row in rows.tolist()])
+    if vouched is not None:
+        reasons[vouched] = (*reasons.get(vouched, ()), VOUCHED)
     candidates = tuple(
-        Candidate(front[rows[row]], reasons, tuple(found.weights[row].tolist()))
-        for row, reasons in found.reasons.items()
+        Candidate(front[rows[row]], why, tuple(found.weights[row].tolist())) for row, why in reasons.items()
     )
     goals = found.goals
     return Choosing(
@@ -75,3 +81,11 @@ def choosing_of(
         len(goals.meeting),
         tuple(goals.lacks.tolist()),
     )
+
+
+def _vouched(designs: Sequence[Design]) -> int | None:
+    """The place of the best by goal attainment that the model vouches for; None where it does for all or for none."""
+    if all(design.valid is not False for design in designs):
+        return None
+    known = [i for i, design in enumerate(designs) if design.valid and design.attainment is not None]
+    return known[0] if known else None

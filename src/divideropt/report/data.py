@@ -23,9 +23,11 @@ from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.neighbourhood import with_residuals
 from divideropt.campaign.plan import Run, build_problem, reference_of
+from divideropt.models import Verifiable
 from divideropt.models.base import FloatArray
-from divideropt.problem import Problem
+from divideropt.problem import Evaluations, Problem
 from divideropt.report.choosing import Choosing, choosing_of
+from divideropt.report.closely import shown_closely
 from divideropt.report.convergence import Track, tracks_of
 from divideropt.report.cost import Cost, read_cost
 from divideropt.report.drawn import rows_drawn
@@ -92,7 +94,7 @@ class ReportData:
         provenance: What computed it, and how to repeat it.
         studies: The campaign's sensitivity studies in short.
         sketches: What draws the designs to scale; None for a model that offers no sketch.
-        sheets: Dimension sheets of designs whose response there is; None where there are none.
+        sheets: Dimension sheets of the designs shown closely; None where there are none.
     """
 
     name: str
@@ -188,10 +190,11 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     cost = read_cost(campaign, store) if campaign.nominal else None
     waiting = (COMPANION_NOTE,) if campaign.nominal and cost is None else ()
     best = _best(facts, logs, lambda rows: designs_of(rows, problem, schema, strategies))
+    closely = shown_closely(front, best)
     variables, objectives = variables_of(problem), objectives_of(problem, front, reference)
     failures = all_failures([log.failures for log in logs.values()])
     breaches = all_breaches([log.breaches for log in logs.values()])
-    data = ReportData(
+    return ReportData(
         campaign.name,
         text,
         setting_of(campaign),
@@ -211,22 +214,26 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
         _comparison(facts, logs, problem, reference, {run.name for run in active}),
         choosing_of(front, problem.objectives, reference),
         leanings(front, problem.space),
-        read_responses(problem, front, best),
+        read_responses(problem, closely),
         _with_companion(read_scenarios(problem, table, worth_a_table(front, problem)), cost),
         cost,
         state_of(facts, store) + notes + waiting,
-        read_provenance(store, campaign),
+        read_provenance(store, campaign, verifiable=isinstance(problem.model, Verifiable)),
         study_summary(store),
+        read_sketches(problem),
+        read_sheets(problem, closely, _evaluated(closely, [table, *_bests(logs)], schema)),
     )
-    return _with_dimensions(data, problem)
 
 
-def _with_dimensions(data: ReportData, problem: Problem) -> ReportData:
-    """Add what draws the designs, and sheets of those whose response there is."""
-    known = {design.design_id: design for design in (*data.front, *data.best)}
-    simulated = data.responses.designs if data.responses else ()
-    sheets = read_sheets(problem, [known[response.name] for response in simulated if response.name in known])
-    return replace(data, sketches=read_sketches(problem), sheets=sheets)
+def _evaluated(designs: Sequence[Design], tables: Sequence[pa.Table], schema: TableSchema) -> Evaluations:
+    """Find what came out of designs that these tables hold."""
+    rows = pa.concat_tables([table.select(schema.results.names) for table in tables])
+    places = {name: row for row, name in enumerate(rows["design_id"].to_pylist())}
+    return schema.evaluations(rows.take(pa.array([places[d.design_id] for d in designs], pa.int64())))
+
+
+def _bests(logs: Mapping[str, Summary]) -> list[pa.Table]:
+    return [log.best.design for log in logs.values() if log.best is not None]
 
 
 def _shortest(runs: Sequence[Run], logs: Mapping[str, Summary]) -> dict[str, int]:

@@ -19,6 +19,8 @@ def choosing_table(data: ReportData) -> Table:
         for axis in axes
     ]
     headings.append(Heading("pseudo-weights", "in the same order"))
+    told = any(candidate.design.valid is not None for candidate in data.choosing.candidates)
+    headings += [Heading("within", "validity", numeric=False)] if told else []
     rows = []
     for candidate in data.choosing.candidates:
         design = candidate.design
@@ -26,6 +28,7 @@ def choosing_table(data: ReportData) -> Table:
         met = zip(axes, design.objectives, design.met, strict=True)
         cells += [Cell(axis.text(value), met=goal) for axis, value, goal in met]
         cells.append(Cell(" ".join(f"{weight:.2f}" for weight in candidate.weights)))
+        cells += [Cell({True: "yes", False: "no", None: "–"}[design.valid])] if told else []
         rows.append(Row(design.design_id, tuple(cells)))
     return Table(tuple(headings), tuple(rows))
 

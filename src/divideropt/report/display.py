@@ -22,7 +22,7 @@ _UNITS: Mapping[str, tuple[tuple[float, str, float], ...]] = MappingProxyType(
         "m^3/s": ((1e-6, "mL/min", 6e7), (math.inf, "L/min", 6e4)),
         "m^2/s": ((math.inf, "mm²/s", 1e6),),
         "m/s": ((1.0, "mm/s", 1e3), (math.inf, "m/s", 1.0)),
-        "Pa": ((1e8, "MPa", 1e-6), (math.inf, "GPa", 1e-9)),
+        "Pa": ((5e8, "MPa", 1e-6), (math.inf, "GPa", 1e-9)),
         "s": ((10.0, "ms", 1e3), (math.inf, "s", 1.0)),
         "kg": ((1.0, "g", 1e3), (math.inf, "kg", 1.0)),
         "kg/m^3": ((math.inf, "kg/m³", 1.0),),
@@ -30,6 +30,11 @@ _UNITS: Mapping[str, tuple[tuple[float, str, float], ...]] = MappingProxyType(
     }
 )
 """The platform's unit to what is shown: (below this magnitude, unit, factor), the first that fits. Others stay."""
+
+LEAST, MOST = 1e-2, 1e4
+"""A column is in the unit of its typical size while its largest number is from the one to below the other: so one
+quantity has one unit on a page, whatever values a figure and a table have of it.
+"""
 
 DIGITS = 4
 """Significant digits in tables; a simulated figure means no more."""
@@ -110,15 +115,26 @@ def axis_of(entry: Parameter | Quantity | Dimension, values: Iterable[float]) ->
 
     Args:
         entry: What the column holds.
-        values: Values it takes, by which the unit is chosen.
+        values: Values it takes; where they are far from its typical size, the unit is theirs.
     """
-    symbol = re.sub(r",?\s*\(\d+\.\d+\)", "", entry.symbol).strip()
+    symbol = re.sub(r"(^|,\s*)\(\d+\.\d+\)$", "", entry.symbol).strip()
+    symbol = "" if re.search(r"\(\d+\.\d+\)", symbol) else symbol  # a formula of equations' numbers is none
     magnitude = isinstance(entry, Quantity) and entry.signed
     if magnitude and symbol:
         symbol = f"|{symbol}|"
     symbol = symbol if symbol.strip("|") else ""  # of a magnitude that has none
-    words, shown = _words_of(entry.name), shown_as(entry.unit, values)
+    words, shown = _words_of(entry.name), _unit_of(entry, values)
     return Axis(entry.name, words, symbol, entry.description, shown, entry.unit, magnitude)
+
+
+def _unit_of(entry: Parameter | Quantity | Dimension, values: Iterable[float]) -> Shown:
+    """Choose a column's unit: by its typical size, unless the values are far from it or it has none."""
+    if isinstance(entry, Dimension):
+        return shown_as(entry.unit, values)
+    found = list(values)
+    usual = shown_as(entry.unit, [entry.scale if isinstance(entry, Quantity) else entry.default])
+    largest = max((abs(value) for value in found if math.isfinite(value)), default=0.0) * usual.scale
+    return usual if largest == 0.0 or LEAST <= largest < MOST else shown_as(entry.unit, found)
 
 
 def _words_of(name: str) -> str:
@@ -148,18 +164,21 @@ def shown_as(unit: str, values: Iterable[float]) -> Shown:
 
 
 def number(value: float, digits: int = DIGITS) -> str:
-    """Write a number with so many significant digits, a true minus sign, and no exponent where none is needed."""
+    """Write a number with so many significant digits, a true minus sign, and no exponent where none is needed.
+
+    An exponent is a multiple of 3, as engineers write it: 250.0·10⁻⁹.
+    """
     if not math.isfinite(value):
         return "–"
     if value == 0.0:
         return "0"
-    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    short = float(f"{value:.{digits - 1}e}")
+    exponent = math.floor(math.log10(abs(short)))
     if -4 <= exponent < 6:
-        text = f"{value:.{max(0, digits - 1 - exponent)}f}"
-    else:
-        mantissa = f"{value:.{digits - 1}e}".split("e")[0]
-        text = f"{mantissa}·10{str(exponent).translate(_RAISED)}"
-    return text.replace("-", "−")
+        return f"{value:.{max(0, digits - 1 - exponent)}f}".replace("-", "−")
+    whole = 3 * (exponent // 3)
+    mantissa = f"{short / 10.0**whole:.{max(0, digits - 1 - (exponent - whole))}f}"
+    return f"{mantissa}·10{str(whole).translate(_RAISED)}".replace("-", "−")
 
 
 def trimmed(text: str) -> str:

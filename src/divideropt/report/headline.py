@@ -41,6 +41,7 @@ class Headline:
 
     Attributes:
         best: The best design by goal attainment; None without a feasible design, or a goal for every objective.
+        within: The best of the front that keeps to what the model assumes, where the best of all does not; else None.
         goals: How many objectives have a goal.
         aims: The objectives; empty without a front.
         designs: How many the front has.
@@ -48,6 +49,7 @@ class Headline:
     """
 
     best: Design | None
+    within: Design | None
     goals: int
     aims: tuple[Aim, ...]
     designs: int
@@ -68,7 +70,7 @@ def headline_of(front: Sequence[Design], best: Sequence[Design], objectives: Seq
     """Sum up.
 
     Args:
-        front: The combined front.
+        front: The combined front, the best by goal attainment first.
         best: The best of each strategy by goal attainment.
         objectives: With goals or not.
     """
@@ -77,7 +79,9 @@ def headline_of(front: Sequence[Design], best: Sequence[Design], objectives: Seq
     counts = Counter(sum(met is True for met in design.met) for design in front) if goals else Counter[int]()
     meeting = {count: counts[count] for count in sorted(counts, reverse=True) if count}
     aims = tuple(_aim(facts, front, first) for facts in objectives if front)
-    return Headline(first, goals, aims, len(front), meeting)
+    beyond = first is not None and first.valid is False
+    within = next((design for design in front if beyond and design.valid), None)
+    return Headline(first, within, goals, aims, len(front), meeting)
 
 
 def _aim(facts: ObjectiveFacts, front: Sequence[Design], best: Design | None) -> Aim:

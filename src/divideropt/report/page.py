@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from divideropt.analysis import Summary
+from divideropt.campaign.load import stored_campaign
 from divideropt.report.comparison_figure import comparison_figure
 from divideropt.report.convergence_figure import EARLY, convergence_figure
 from divideropt.report.convergence_tables import convergence_table, unequal
@@ -26,13 +27,22 @@ from divideropt.report.palette import COLOURS, Mark, marks
 from divideropt.report.provenance_tables import versions_table
 from divideropt.report.responses import Responses
 from divideropt.report.scenario_tables import scenario_tables
+from divideropt.report.sensitivity_data import is_study
 from divideropt.report.sensitivity_figures import index_bars
-from divideropt.report.sheets import sheets_payload
+from divideropt.report.sensitivity_page import write_study
+from divideropt.report.sheets import FIRST, MOST_SIMULATED, sheets_payload
 from divideropt.report.sketch_svg import DEFS, light_style
 from divideropt.report.sketches import sketch_payload
 from divideropt.report.step_figure import step_figure, step_window
 from divideropt.report.summary_tables import goals_table
-from divideropt.report.tables import best_table, front_table, outcome_table, runs_table, verified_words
+from divideropt.report.tables import (
+    best_table,
+    commonest_failure,
+    front_table,
+    outcome_table,
+    runs_table,
+    verified_words,
+)
 from divideropt.store import Store
 
 MOST_DEVIATING = 40
@@ -40,7 +50,7 @@ MOST_DEVIATING = 40
 
 
 def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summary] | None = None) -> Path:
-    """Write the report of a store, finished or not.
+    """Write the report of a store, finished or not; of a sensitivity study its page.
 
     Args:
         store: The store.
@@ -51,11 +61,13 @@ def write_report(store: Store, out: Path | None = None, logs: Mapping[str, Summa
         Where it is.
 
     Raises:
-        UsageError: There is no store in the folder.
+        UsageError: There is no store in the folder, or too little of a study to analyse.
         FileMistakes: The campaign in it cannot be read.
         StoreError: The store is damaged or of a later version.
         DiskError: The disk refused.
     """
+    if is_study(stored_campaign(store)):
+        return write_study(store, out)
     text = render_report(read_report(store, logs))
     return store.write_report(text) if out is None else save(out, text)
 
@@ -91,6 +103,8 @@ def render_report(data: ReportData) -> str:
             "reasons": reasons_table(data),
             "volumes": volumes_table(data),
         },
+        pairs=math.comb(len(data.objectives), 2),
+        commonest_failure=commonest_failure(data),
         unequal=unequal(data.tracks),
         share=share,
         early=EARLY,
@@ -99,6 +113,8 @@ def render_report(data: ReportData) -> str:
         brief=brief,
         scenarios=scenario_tables(data.scenarios, dict(data.setting)),
         lacking=lacking(data),
+        first_step=FIRST,
+        most_simulated=MOST_SIMULATED,
         rounded=[] if data.sheets is None else [name.replace("_", " ") for name in data.sheets.rounded],
         number=number,
         verified_words=lambda design: verified_words(design, data),
@@ -111,7 +127,8 @@ def _figures(data: ReportData) -> list[dict[str, Any]]:
     found = []
     if data.front:
         found += _front_figures(data)
-    found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
+    if any(run.feasible for run in data.runs):
+        found += [drawn(track.name, convergence_figure(track, data.strategies)) for track in data.tracks]
     if data.cost is not None:
         for pair, figure in cost_figures(data):
             names = " and ".join(data.objectives[i].axis.words for i in pair)
@@ -172,7 +189,8 @@ def _dimensions(data: ReportData, designs: Mapping[str, Any]) -> dict[str, Any]:
     if data.sketches is None:
         return {}
     variables = np.array(designs["values"][: len(data.variables)], dtype=np.float64).T
-    drawing = sketch_payload(data.sketches, variables)
+    valves = [] if data.sheets is None else [column.dimensions for column in data.sheets.valves]
+    drawing = sketch_payload(data.sketches, variables, valves)
     if drawing is None:
         return {}
     found: dict[str, Any] = {"sketch": {**drawing, "defs": DEFS, "style": light_style()}}
@@ -205,7 +223,10 @@ def _field(
 
 def _designs(data: ReportData) -> dict[str, Any]:
     """Every design that the page can show, a list a column: first those drawn, the best of them first."""
-    more = [*data.best, *(candidate.design for candidate in (data.choosing.candidates if data.choosing else ()))]
+    closely = {response.name for response in data.responses.designs} if data.responses else set()
+    closely |= data.sheets.designs.keys() if data.sheets else set()
+    more = [design for design in (*data.front, *data.best) if design.design_id in closely]
+    more += [*data.best, *(candidate.design for candidate in (data.choosing.candidates if data.choosing else ()))]
     listed = data.front[:MOST_ROWS]
     known = {design.design_id: design for design in (*(data.front[i] for i in data.drawn), *listed, *more)}
     places = {name: place for place, name in enumerate(data.strategies)}
@@ -217,6 +238,9 @@ def _designs(data: ReportData) -> dict[str, Any]:
         "values": [
             [value if math.isfinite(value) else None for value in column] for column in zip(*rows, strict=True)
         ],
+        "valid": None
+        if all(design.valid is None for design in known.values())
+        else [None if design.valid is None else int(design.valid) for design in known.values()],
         "attainment": None
         if data.front[0].attainment is None
         else [None if d.attainment is None else rounded(d.attainment) for d in known.values()],

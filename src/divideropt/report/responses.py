@@ -1,11 +1,10 @@
-"""Step responses for the report: the thesis's three sets, and designs chosen from the front."""
+"""Step responses for the report: of the thesis's three sets, and of the designs that it shows closely."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from divideropt.analysis import spread
 from divideropt.campaign.plan import dividers
 from divideropt.models.base import FloatArray
 from divideropt.models.divider import PARAMETER_SETS, Divider, parameter_set
@@ -17,12 +16,6 @@ from divideropt.problem import Problem, one_thread
 from divideropt.report.display import rounded
 from divideropt.report.front import Design
 from divideropt.report.sampling import thin
-
-MOST_RESPONSES = 200
-"""Designs whose response the page holds; each costs a simulation and about 3 kB."""
-
-BEST_RESPONSES = 20
-"""How many of those are the best by goal attainment."""
 
 MOST_POINTS = 150
 """Points of a response."""
@@ -77,13 +70,12 @@ class Responses:
     notes: tuple[str, ...]
 
 
-def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Design]) -> Responses | None:
+def read_responses(problem: Problem, designs: Sequence[Design]) -> Responses | None:
     """Simulate the responses.
 
     Args:
         problem: What was optimised.
-        front: The combined front, best first.
-        best: The best of each strategy, on the front or not.
+        designs: Those to show.
 
     Returns:
         The responses, or None where the model is not the divider and has none.
@@ -92,7 +84,7 @@ def read_responses(problem: Problem, front: Sequence[Design], best: Sequence[Des
     if model is None:
         return None
     with one_thread():  # as the runs were simulated, so that a response ends as its design did
-        return _simulated(model, problem, _chosen(front, best))
+        return _simulated(model, problem, designs)
 
 
 def step_response(
@@ -143,16 +135,6 @@ def _simulated(model: Divider, problem: Problem, designs: Sequence[Design]) -> R
     if failed:
         notes.append(f"These designs did not complete when simulated again: {', '.join(failed)}.")
     return Responses(tuple(sets), tuple(c for _, c in curves if c is not None), tuple(notes))
-
-
-def _chosen(front: Sequence[Design], best: Sequence[Design]) -> list[Design]:
-    """The best of each strategy, the best by attainment, the extremes of each objective, then an even spread."""
-    objectives = np.array([design.objectives for design in front])
-    first = list(range(min(BEST_RESPONSES, len(front)))) if front and front[0].attainment is not None else []
-    if front:
-        first += [int(row) for row in objectives.argmin(axis=0)]
-        best = [*best, *(front[row] for row in spread(objectives, first, MOST_RESPONSES))]
-    return list({design.design_id: design for design in best}.values())[:MOST_RESPONSES]
 
 
 def _parameters(problem: Problem, design: Design) -> Mapping[str, float]:

@@ -99,6 +99,11 @@ def first_of(indices: pd.DataFrame, quantity: str, kind: str) -> pd.DataFrame:
     return found
 
 
+def is_study(campaign: Campaign) -> bool:
+    """Whether a store's campaign is a sensitivity study: its only strategy is a sampling."""
+    return len(campaign.strategies) == 1 and campaign.strategies[0].name in ("oat", *_UNITS)
+
+
 def method_of(campaign: Campaign) -> str:
     """The sampling of a study.
 
@@ -106,7 +111,7 @@ def method_of(campaign: Campaign) -> str:
         UsageError: The campaign is no study.
     """
     names = [plan.name for plan in campaign.strategies]
-    if len(names) != 1 or names[0] not in ("oat", *_UNITS):
+    if not is_study(campaign):
         raise UsageError(
             f"{campaign.name}: strategies {', '.join(names)}: no sensitivity study; name the store of one"
         )

@@ -172,7 +172,9 @@ def effects_figure(data: StudyData, quantities: Sequence[str]) -> go.Figure:
         )
         unit = f" [{plain(axis.shown.unit)}]" if axis.shown.unit else ""
         figure.update_xaxes(title_text=f"μ*{unit}", rangemode="tozero", **_place(place))
-        figure.update_yaxes(title_text=f"σ{unit}", rangemode="tozero", **_place(place))
+        top = 1.15 * max(y, default=0.0)  # room for the label of the highest
+        figure.update_yaxes(title_text=f"σ{unit}", range=[0.0, top] if top > 0.0 else None, **_place(place))
+        figure.update_yaxes(rangemode="tozero", **_place(place))
     return figure
 
 

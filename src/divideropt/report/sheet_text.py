@@ -12,7 +12,7 @@ from divideropt.models import Parameter, Quantity
 from divideropt.models.dimensions import Dimension, Kind
 from divideropt.report.display import Axis, axis_of, number, trimmed
 from divideropt.report.sketch_layout import WIDTH, lay_out
-from divideropt.report.sketch_svg import described, draw, light_style
+from divideropt.report.sketch_svg import LETTER, described, draw, light_style
 
 DIGITS = 6
 """Significant digits of a dimension: a workshop's figures are exact to more than a simulation's."""
@@ -170,7 +170,8 @@ def _table(found: Sheet, top: float) -> tuple[str, float]:
                 parts.append(f'<text class="title" x="{x:g}" y="{y + 6:g}">{HEADINGS[section]}</text>')
                 parts.append(f'<path class="measure" d="M{x:g} {y + 12:g}h456"/>')
                 y += LINE + 8.0
-            cells = [(x, "start", row.words, ""), (x + 178.0, "start", row.symbol, "note")]
+            symbol = row.symbol if LETTER * len(row.words) < 172.0 else ""  # else one would lie on the other
+            cells = [(x, "start", row.words, ""), (x + 178.0, "start", symbol, "note")]
             places = (x + 318.0, x + 398.0)[-len(row.texts) :]
             cells += [(place, "end", text, "") for place, text in zip(places, row.texts, strict=True)]
             cells.append((x + 404.0, "start", row.unit, "note"))

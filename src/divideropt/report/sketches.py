@@ -1,6 +1,6 @@
 """The designs of a report to scale: one drawing for all, and of each design the dimensions that vary."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,22 +46,29 @@ def read_sketches(problem: Problem) -> Sketches | None:
     return None if model is None else Sketches(model, problem.fixed, problem.space.names)
 
 
-def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any] | None:
+def sketch_payload(
+    found: Sketches, variables: FloatArray, more: Sequence[Mapping[str, float]] = ()
+) -> dict[str, Any] | None:
     """Word the sketches for the page's script.
 
     Args:
         found: What draws them.
         variables: Those of the page's designs, in its order, shape (n, d) with n at least 1.
+        more: The dimensions of what else is drawn, by name.
 
     Returns:
-        The drawing, laid out for all of them, and a list a dimension that varies: a dimension that is constant is a
-        number, one in proportion to another is the other's place and a factor, and null is what is not known. None
-        where no design has all its variables.
+        The drawing, laid out for all of them, and a list a dimension that varies, the designs first: a dimension
+        that is constant is a number, one in proportion to another is the other's place and a factor, and null is what
+        is not known. None where no design has all its variables.
     """
     known = np.flatnonzero(np.isfinite(variables).all(axis=1))
     if len(known) == 0:
         return None
-    columns = found.measured(variables[known])
+    columns = {
+        name: np.concatenate([column, [other[name] for other in more]])
+        for name, column in found.measured(variables[known]).items()
+    }
+    rows = [*known.tolist(), *range(len(variables), len(variables) + len(more))]
     drawing = lay_out(found.model.sketch, found.model.dimensions, columns)
     stored: list[Any] = []
     kept: dict[int, FloatArray] = {}
@@ -76,8 +83,8 @@ def sketch_payload(found: Sketches, variables: FloatArray) -> dict[str, Any] | N
             stored.append({"of": of, "times": float(column[0] / kept[of][0])})
         else:
             kept[place] = column
-            values: list[float | None] = [None] * len(variables)
-            for row, value in zip(known.tolist(), column.tolist(), strict=True):
+            values: list[float | None] = [None] * (len(variables) + len(more))
+            for row, value in zip(rows, column.tolist(), strict=True):
                 values[row] = rounded(value)
             stored.append(values)
     return {

@@ -141,6 +141,15 @@ def outcome_table(data: ReportData) -> Table:
     return Table(headings, tuple(rows))
 
 
+def commonest_failure(data: ReportData) -> tuple[str, str]:
+    """How most of the simulations that failed did, and a sentence of the first of these; "" where none did."""
+    counts = {o: sum(run.outcomes.get(o, 0) for run in data.runs) for o in Outcome if o is not Outcome.OK}
+    most = max(counts, key=lambda outcome: counts[outcome])
+    if not counts[most]:
+        return "", ""
+    return most, next((run.examples[most] for run in data.runs if most in run.examples), "")
+
+
 def _designs(data: ReportData, designs: Sequence[Design], first: Heading) -> Table:
     goals = bool(designs) and designs[0].attainment is not None
     axes = [facts.axis for facts in data.objectives] + [facts.axis for facts in data.variables]

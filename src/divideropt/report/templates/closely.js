@@ -18,6 +18,7 @@ function tellDetails(row) {
   for (const i of [...order.slice(firstObjective), ...order.slice(0, firstObjective)]) {
     add(fields[i].label, number(columns[i][row]), fields[i].goal_words, met(row, i));
   }
+  if (report.designs.valid && report.designs.valid[row] !== null) add("within what the model assumes", report.designs.valid[row] ? "yes" : "no");
 }
 
 // --- responses ---

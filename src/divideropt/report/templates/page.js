@@ -4,9 +4,12 @@ const report = JSON.parse(document.getElementById("report-data").textContent);
 const byId = (id) => document.getElementById(id);
 const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;"); // plotly reads tags
 
+/** With an exponent that is a multiple of 3, as engineers write it. */
 function raised(value) {
-  const [mantissa, exponent] = value.toExponential(3).split("e");
-  return mantissa + "·10" + exponent.replace("+", "").replace("-", "⁻").replace(/[0-9]/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
+  const [mantissa, exponent] = value.toExponential(3).split("e").map(Number);
+  const over = ((exponent % 3) + 3) % 3;
+  const power = String(exponent - over).replace("-", "⁻").replace(/[0-9]/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
+  return (mantissa * 10 ** over).toFixed(3 - over) + "·10" + power;
 }
 
 function number(value) {

@@ -99,6 +99,20 @@ function itemNodes(item, values) {
   return [svgMake("path", { class: "bar", d: path }), sketchText(item.x + item.width + 8, item.y + 4, item.text, "scale", "start")];
 }
 
+/** The row that is drawn of a design: as rounded to the step chosen, where the page has that. */
+function drawnRow(id) {
+  const valve = roundedOf(id);
+  return valve && valve.row !== undefined ? ids.length + valve.row : rowOf.get(id);
+}
+
+/** How a design is drawn. */
+function drawnWords(id) {
+  const valve = roundedOf(id);
+  if (!chosenStep()) return "as it is";
+  if (valve && valve.row !== undefined) return "rounded to " + stepWords();
+  return "as it is, since " + (valve ? "rounded to " + stepWords() + " there is no such valve" : "the page has no rounded dimensions of it");
+}
+
 function tellSketch() {
   const { lead } = selection;
   const group = byId("sketch-drawn");
@@ -110,17 +124,18 @@ function tellSketch() {
   }
   byId("sketched-others").hidden = others.length === 0;
   byId("sketched-others").textContent = "Thin lines: " + (traced.length < others.length ? "the first " + traced.length + " of " : "the outlines of ") + counted(others.length, "other selected design") + ".";
-  const values = lead === null ? [null] : dimensionsOf(rowOf.get(lead));
+  const values = lead === null ? [null] : dimensionsOf(drawnRow(lead));
+  const tell = (words) => { byId("sketch-said").textContent = byId("sketch-title").textContent = words; };
   if (values.includes(null)) {
-    byId("sketch-title").textContent = lead === null ? "No design selected" : "Of " + lead + " not every dimension is known";
+    tell(lead === null ? "No design selected" : "Of " + lead + " not every dimension is known");
     byId("sketch-words").textContent = "";
     group.replaceChildren();
     return;
   }
-  byId("sketch-title").textContent = "Design " + lead + ", drawn to scale";
+  tell("Design " + lead + ", drawn to scale, " + drawnWords(lead) + ".");
   byId("sketch-words").textContent = report.sketch.main.map((i) => report.sketch.names[i] + " " + measureText(i, values)).join(", ");
   const outlines = report.sketch.items.filter((item) => item.traced);
-  const trace = (id) => svgMake("path", { class: "other", d: outlines.map((item) => outlineOf(item, dimensionsOf(rowOf.get(id)))).join("") });
+  const trace = (id) => svgMake("path", { class: "other", d: outlines.map((item) => outlineOf(item, dimensionsOf(drawnRow(id)))).join("") });
   group.replaceChildren(...report.sketch.items.flatMap((item) => itemNodes(item, values)), ...traced.map(trace));
 }
 
