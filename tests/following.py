@@ -100,11 +100,12 @@ def agrees(printed: str, expected: str) -> str | None:
 def here(folder: Path) -> dict[str, str]:
     """Make the environment in which `divideropt` is this tree, also where a page sets PYTHONPATH for its own model.
 
-    With `-P` the working folder is not on Python's path, as it is not for the installed command.
+    `dask` starts workers that have it too. With `-P` the working folder is not on Python's path, as it is not for the
+    installed command.
     """
     folder.mkdir(exist_ok=True)
     python = shlex.quote(sys.executable)
-    for name, call in (("divideropt", "-P -m divideropt "), ("python", "")):
+    for name, call in (("divideropt", "-P -m divideropt "), ("dask", "-P -m dask "), ("python", "")):
         path = f'PYTHONPATH="${{PYTHONPATH:+$PYTHONPATH:}}"{shlex.quote(str(ROOT / "src"))}'
         (folder / name).write_text(f'#!/bin/sh\n{path} exec {python} {call}"$@"\n', encoding="utf-8")
         (folder / name).chmod(0o755)

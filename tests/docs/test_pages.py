@@ -27,10 +27,10 @@ FOLLOWED = (
     "how-to/sensitivity.md",
 )
 NOT_RUN = {
-    "python -m pip install 'divideropt[dask]'": "installs; the test extra has dask",
-    "dask scheduler --host node1 --port 8786": "on a cluster's machine; tests/campaign/test_cluster.py has its own",
-    "dask worker tcp://node1:8786 --nworkers 16 --nthreads 1": "another",
-    "divideropt run campaign.yaml --store /shared/results/divider": "where these are",
+    "python -m pip install '.[dask]'": "installs; the test extra has dask",
+    "dask scheduler --host node1 --port 8786": "on a cluster's machine; test_cluster_page.py follows it on this one",
+    "dask worker tcp://node1:8786 --nworkers 16 --nthreads 1": "the same",
+    "divideropt run campaign.yaml --store /shared/results/divider": "the same",
     "divideropt run spring.yaml --branch": "on another processor; tests/campaign/test_branches.py makes such a store",
     "python docs/make_claims.py": "a page says how it was written, in three minutes; test_claims.py holds it",
     "python docs/make_thesis_figures.py": "the same; test_thesis_figures.py holds it",
