@@ -1,14 +1,16 @@
 """What a large report weighs, and how soon a browser answers on it: 5,000 designs on the front, 30,000 evaluations.
 
-    python benchmarks/report_page.py [--store DIR] [--loads N] [--write] [--profile FILE]
+    python benchmarks/report_page.py [--store DIR] [--loads N] [--against PAGE] [--write] [--profile FILE]
 
 Makes a store, unless there is one, whose objectives are made up and whose responses are the valve's; writes its
 report as `divideropt report` does; and opens it in headless Chromium, which computes WebGL with the processor. Prints
 the page's bytes by part, and of each load when the page is drawn, and when a brush on an axis of the parallel
 coordinates, made as soon as it is drawn and with them in view, is followed by every view and on the screen, both
 since the navigation. Then how long another brush takes, and a third with the front in three dimensions in view. All
-by the clock and in processor time of the page's main thread. `--write` puts that into `docs/benchmarks.md`;
-`--profile` writes the last load's processor profile, as the browser's own tools read it.
+by the clock and in processor time of the page's main thread. Then of each kind of selection how long the first views
+take to follow, and all of them (`report_selections.py`). `--against` names an older report's page, which takes turns
+with it; `--write` puts the figures into `docs/benchmarks.md`; `--profile` writes a load's processor profile, as the
+browser's own tools read it.
 """
 
 import argparse
@@ -18,13 +20,15 @@ import re
 import shutil
 import statistics
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
+from report_selections import WATCH, Answer, answers, works
+from report_selections import worded as worded_answers
 
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.load import parse_campaign
@@ -136,6 +140,7 @@ class Load:
         with_front: A third, with the front in three dimensions in view.
         selected: Designs that the first brush selected.
         busy: How many processes wanted the machine's cores.
+        answers: Each kind of selection, and how soon it was followed.
     """
 
     drawn: float
@@ -144,12 +149,14 @@ class Load:
     with_front: tuple[float, float]
     selected: int
     busy: float
+    answers: Mapping[str, Answer]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--store", type=Path, help="where the store is, or is to be; else it is thrown away")
     parser.add_argument("--loads", type=int, default=5)
+    parser.add_argument("--against", type=Path, help="an older report of the same store, to be measured in turns")
     parser.add_argument("--write", action="store_true", help="write the figures into docs/benchmarks.md")
     parser.add_argument("--profile", type=Path, help="where to write a processor profile of a load")
     chosen = parser.parse_args()
@@ -161,11 +168,14 @@ def main() -> None:
         with sync_playwright() as playwright:
             args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
             browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=args)
-            loads = [measured(browser, page) for _ in range(chosen.loads)]
+            pages = {"this": page} | ({"before": chosen.against} if chosen.against else {})
+            turns = [{name: measured(browser, path) for name, path in pages.items()} for _ in range(chosen.loads)]
+            loads = [turn["this"] for turn in turns]
             if chosen.profile:
                 chosen.profile.write_text(json.dumps(profiled(browser, page)))
             browser.close()
-        text = "\n".join(worded(page.read_text("utf-8"), loads)) + "\n"
+        selections = worded_answers({name: [turn[name].answers for turn in turns] for name in pages})
+        text = "\n".join([*worded(page.read_text("utf-8"), loads), "", *selections]) + "\n"
     print(text)
     if chosen.write:
         write_section(text)
@@ -217,7 +227,7 @@ def measured(browser: Browser, path: Path) -> Load:
     """Open the page and brush."""
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(PATIENCE)
-    page.add_init_script(PROBE)
+    page.add_init_script(PROBE + WATCH)
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     busy = os.getloadavg()[0]
@@ -232,8 +242,10 @@ def measured(browser: Browser, path: Path) -> Load:
     page.locator("#front").scroll_into_view_if_needed()
     page.wait_for_timeout(SETTLING)
     third = brushed(page, session, "lower3")
+    page.keyboard.press("Escape")
+    found = answers(page, session)
     page.close()
-    return Load(drawn / 1e3, (first / 1e3, interactive), second, third, int(count), busy)
+    return Load(drawn / 1e3, (first / 1e3, interactive), second, third, int(count), busy, found)
 
 
 def brushed(page: Page, session: CDPSession, end: str) -> tuple[float, float]:
@@ -241,12 +253,6 @@ def brushed(page: Page, session: CDPSession, end: str) -> tuple[float, float]:
     before = works(session)
     clock, _ = page.evaluate("end => window.brushed(end, 'PageUp')", end)
     return clock / 1e3, works(session) - before
-
-
-def works(session: CDPSession) -> float:
-    """Processor time of the page's main thread since the navigation [s]."""
-    metrics = {metric["name"]: metric["value"] for metric in session.send("Performance.getMetrics")["metrics"]}
-    return float(metrics["TaskDuration"])
 
 
 def profiled(browser: Browser, path: Path) -> object:

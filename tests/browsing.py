@@ -69,7 +69,8 @@ class Opened:
         return self.page.locator(selector).count()
 
     def lines(self) -> list[str]:
-        """Outlines of the response's lines as drawn."""
+        """Outlines of the response's lines as drawn, for what is selected."""
+        self.settled()
         return self.page.eval_on_selector_all(
             "#response .scatterlayer path.js-line", "paths => paths.map(p => p.getAttribute('d'))"
         )
@@ -78,7 +79,12 @@ class Opened:
         """Each design's `id`, place on the screen `x`, `y` [px], and alpha in the canvases `all` and `some` there."""
         return list(self.page.evaluate(DOTS, pair))
 
+    def settled(self) -> None:
+        """Wait until every view has followed the selection."""
+        self.page.wait_for_selector("html:not([data-following])", timeout=PATIENCE)
+
     def title(self) -> str:
+        self.settled()
         return self.page.locator("#selected-title").inner_text()
 
 

@@ -40,6 +40,19 @@ TRANSITIONS = """() => [...document.querySelectorAll("*")].map((e) => getCompute
     .filter((time) => parseFloat(time) > 0)"""
 
 
+SHADES = """() => {
+    const canvas = document.querySelector("#front canvas.printed");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const shades = [];
+    for (let i = 0; i < data.length; i += 4) {
+        const colour = data.subarray(i, i + 3);
+        if (data[i + 3] > 200) shades.push([Math.min(...colour), Math.max(...colour)]);
+    }
+    return [shades.filter(([, most]) => most < 60).length, shades.filter(([least]) => least > 215).length];
+}"""
+"""How many pixels of the front as it is printed are dark, and how many light: paper's text and the screen's."""
+
+
 @pytest.fixture(scope="module")
 def report(opened: Callable[..., Opened], data: ReportData) -> Opened:
     return opened(render_report(data), NO_WEBGL)
@@ -54,6 +67,7 @@ def page(report: Opened) -> Page:
     )
     report.page.keyboard.press("Escape")
     expect(report.page.locator("#let-go")).to_be_hidden()
+    report.settled()
     return report.page
 
 
@@ -61,6 +75,7 @@ def test_axe_finds_nothing_but_what_is_wrong(report, page):
     for row, keys in ((1, []), (3, ["Control"])):
         page.locator("#front-table tbody tr").nth(row).click(modifiers=keys)
     expect(page.locator("#compared tbody tr")).to_have_count(2)
+    report.settled()
     assert findings(report) == []
     quiet(report)
     page.evaluate(MISLEAD, "nothing")
@@ -99,6 +114,7 @@ def test_keys_alone_lead_from_the_pages_start_to_a_design_and_its_response(repor
     page.keyboard.press("Enter")
     chosen = data.front[2].design_id
     expect(page.locator("#announced[role=status]")).to_contain_text(chosen)
+    report.settled()
     assert page.evaluate("document.activeElement.getAttribute('data-id')") == chosen
     assert page.evaluate("document.activeElement.getAttribute('aria-selected')") == "true"
     assert chosen in report.title()
@@ -233,15 +249,61 @@ def test_figures_follow_paper_of_another_width(page):
     assert blank_figures(page) == []
 
 
+def test_the_front_in_three_dimensions_is_printed_in_papers_colours(opened, data, tmp_path: Path):
+    page = opened(render_report(data)).page
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_selector("#front[data-drawn]")
+    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    page.pdf(path=tmp_path / "report.pdf", format="A4")
+    dark, light = page.evaluate(SHADES)
+    assert dark > 100, "text"
+    assert light == 0
+    assert not page.locator("#front .printed").is_visible(), "the screen has the one that turns"
+
+
+def test_a_figure_taller_than_paper_is_made_to_fit_a_page(opened, data):
+    text = render_report(data)
+    assert text.count('"height":520') == 1
+    page = opened(text.replace('"height":520', '"height":2100'), NO_WEBGL).page
+    tall = page.locator("#response")
+    size = "e => [e.getBoundingClientRect().width, e.getBoundingClientRect().height]"
+    wide, high = tall.evaluate(size)
+    assert high == 2100
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 703, "height": 1000})
+    page.wait_for_timeout(500)
+    assert tall.evaluate(size) == pytest.approx([703, 900], abs=1)
+    assert all(width == own for width, own in page.evaluate(OWN))
+    assert blank_figures(page, "#response") == []
+    page.emulate_media(media="screen")
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.wait_for_timeout(500)
+    assert tall.evaluate(size) == [wide, high]
+
+
+def test_the_label_of_a_point_writes_numbers_as_the_page_does(opened, data):
+    front = tuple(replace(d, objectives=(*d.objectives[:2], 1.23456e10)) for d in data.front)
+    some = replace(data, front=front, best=(), choosing=None)
+    found = opened(render_report(some), NO_WEBGL)
+    place = found.page.locator("#projection-0-2")
+    place.evaluate("e => e.scrollIntoView({ block: 'center', behavior: 'instant' })")
+    point = found.dots("0-2")[0]
+    found.page.mouse.move(point["x"] - 2, point["y"])
+    found.page.mouse.move(point["x"], point["y"])
+    expect(place.locator(".hoverlayer")).to_contain_text("source pressure 12346 MPa")
+
+
 def test_a_number_is_written_alike_by_the_page_and_its_script(opened, data):
     sizes = (1.23456e10, 9.87654e12, 2.5e1, 0.0, -3.2e9)
     front = [replace(d, objectives=(*d.objectives[:2], size)) for d, size in zip(data.front, sizes, strict=False)]
     some = replace(data, front=tuple(front), drawn=tuple(range(len(front))), best=(), choosing=None)
-    page = opened(render_report(some), NO_WEBGL).page
+    found = opened(render_report(some), NO_WEBGL)
+    page = found.page
     heading = page.locator("#front-table thead th").all_text_contents()
     column = next(i for i, words in enumerate(heading) if words.strip().startswith("source pressure"))
     for row in page.locator("#front-table tbody tr").all():
         row.click()
+        found.settled()
         written = row.locator("td").nth(column).text_content().strip("✓✗ \n")
         told = page.locator("#details div", has_text="source pressure").locator("dd").inner_text()
         assert re.split(r"\s*[✓✗]", told)[0] == written

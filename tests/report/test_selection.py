@@ -65,6 +65,14 @@ INK = """([from, to]) => {
 """How many pixels between two places [px] have a line on them."""
 
 
+CLICKS = """rows => rows.map((row) => {
+    document.querySelectorAll("#front-table tbody tr")[row].click();
+    const counts = ["parallel", "projection-0-1"].map((id) => document.getElementById(id).dataset.selected);
+    return [...counts, document.getElementById("announced").textContent];
+})"""
+"""Clicks on rows in one go; what lines, points and bar tell in the very moment after each."""
+
+
 @pytest.fixture(scope="module")
 def page_text(data: ReportData) -> str:
     return render_report(data)
@@ -80,6 +88,7 @@ def report(opened: Callable[..., Opened], page_text: str) -> Opened:
 def nothing_selected(report: Opened) -> None:
     report.page.keyboard.press("Escape")
     expect(report.page.locator("#let-go")).to_be_hidden()
+    report.settled()
 
 
 def drag(found: Opened, begin: tuple[float, float], end: tuple[float, float]) -> None:
@@ -99,8 +108,9 @@ def brush(found: Opened, axis: int, begin: float, end: float) -> None:
 
 
 def told(found: Opened, count: int) -> None:
-    """Wait until so many are announced."""
+    """Wait until so many are announced, and every view has followed."""
     expect(found.page.locator("#announced")).to_contain_text(re.compile(rf"^{count or 'No'} design"))
+    found.settled()
 
 
 def followed(found: Opened, count: int) -> None:
@@ -273,6 +283,18 @@ def test_a_row_selects_and_another_joins(report, data):
     assert data.front[4].design_id in report.title()
 
 
+def test_what_was_selected_is_seen_at_once_and_the_last_selection_lasts(report, data):
+    at_once = report.page.evaluate(CLICKS, [2, 4])
+    assert at_once == [
+        ["1", "1", f"1 design of {len(data.front)} selected: {data.front[i].design_id}"] for i in (2, 4)
+    ]
+    followed(report, 1)
+    assert data.front[4].design_id in report.title()
+    (row,) = report.page.locator("#front-table tr[aria-selected=true]").all()
+    assert row.get_attribute("data-id") == data.front[4].design_id
+    quiet(report)
+
+
 def test_a_line_can_be_clicked(report, data):
     into_view(report, "#parallel")
     first, second = (report.page.locator("#parallel .axis .spine").nth(k).bounding_box() for k in (0, 1))
@@ -337,6 +359,7 @@ def test_the_address_restores_a_selection(report, data):
     followed(report, 3)
     assert wanted[2] in report.title()
     report.page.keyboard.press("Escape")
+    report.settled()
     assert report.page.evaluate("location.hash") == ""
     quiet(report)
 
@@ -344,6 +367,7 @@ def test_the_address_restores_a_selection(report, data):
 def test_designs_that_the_page_has_not_are_said(report, data):
     report.page.evaluate("text => { location.hash = text; }", f"#select={data.front[1].design_id},nsga2-9/1.2")
     expect(report.page.locator("#announced")).to_contain_text("2 of the 3 designs that the address names are not in")
+    report.settled()
     assert report.page.evaluate(COUNTS)["rows"] == 1
 
 

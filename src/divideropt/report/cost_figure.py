@@ -10,7 +10,7 @@ from divideropt.report.cost import Placed
 from divideropt.report.data import ReportData
 from divideropt.report.display import rounded
 from divideropt.report.facts import ObjectiveFacts
-from divideropt.report.figures import MOST_PROJECTIONS, goal_lines, hover, label, layout, ring
+from divideropt.report.figures import HOVER, MOST_PROJECTIONS, goal_lines, label, layout, ring
 from divideropt.report.palette import COLOURS
 
 BEYOND = 1.5
@@ -52,7 +52,7 @@ def _figure(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts) -> 
             mode="markers",
             marker={"color": colour, "symbol": shape, "size": 7, "opacity": 0.8},
             customdata=np.array(ids, dtype=object),
-            hovertemplate=hover({"x": first, "y": second}),
+            hovertemplate=HOVER,
         )
     figure.add_scatter(**ring(13), x=[], y=[])
     figure.update_xaxes(title_text=label(first), range=_range(placed, first))

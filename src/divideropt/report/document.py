@@ -22,7 +22,7 @@ CONFIG: Mapping[str, Any] = {
     "showSendToCloud": False,  # the "share" button, which would send the data to a server
     "plotlyServerURL": "",
     "modeBarButtonsToRemove": ["sendChartToCloud", "select2d", "lasso2d", "autoScale2d"],
-    "responsive": True,
+    "responsive": False,  # the page's script sees to it, on paper too
 }
 """What every figure is drawn with."""
 

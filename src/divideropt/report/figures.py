@@ -1,7 +1,7 @@
 """Plotly figures of the front. Colours of text and grids are the page's, which knows the theme."""
 
 import html
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -37,6 +37,9 @@ MARGIN = 0.05
 BEHIND = 0.35
 """How far the axes go beyond the front, where something was tried there, in shares of its extent."""
 
+HOVER = "<b>%{customdata}</b><br>%{text}<extra></extra>"
+"""What is shown of a point under the pointer: its design, and its objectives as the page's script writes numbers."""
+
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif"
 """Fonts that are there: none is fetched."""
 
@@ -53,7 +56,7 @@ def front_3d(data: ReportData) -> go.Figure:
             mode="markers",
             marker={"color": mark.colour, "symbol": mark.shape, "size": 4, "opacity": mark.opacity},
             customdata=_ids(designs),
-            hovertemplate=hover(dict(zip("xyz", first, strict=True))),
+            hovertemplate=HOVER,
         )
     figure.add_scatter3d(
         x=[],
@@ -63,7 +66,7 @@ def front_3d(data: ReportData) -> go.Figure:
         mode="markers",
         marker={"size": 5},
         customdata=[],
-        hovertemplate=hover(dict(zip("xyz", first, strict=True))),
+        hovertemplate=HOVER,
     )
     figure.add_scatter3d(**ring(12), x=[], y=[], z=[])
     axes = {f"{k}axis": {"title": {"text": label(o)}} for k, o in zip("xyz", first, strict=True)}
@@ -148,7 +151,7 @@ def _projection(data: ReportData, first: ObjectiveFacts, second: ObjectiveFacts)
                 "opacity": mark.opacity,
             },
             customdata=_ids(designs),
-            hovertemplate=hover({"x": first, "y": second}),
+            hovertemplate=HOVER,
         )
     figure.add_scatter(**ring(13), x=[], y=[])
     figure.update_xaxes(title_text=label(first), range=_range(data, first))
@@ -198,14 +201,6 @@ def _columns(designs: Sequence[Design], objectives: Sequence[ObjectiveFacts]) ->
 
 def _ids(designs: Sequence[Design]) -> NDArray[np.object_]:
     return np.array([plain(design.design_id) for design in designs], dtype=object)
-
-
-def hover(axes: Mapping[str, ObjectiveFacts]) -> str:
-    """What is shown of a point under the pointer, by its axes `x`, `y`, `z`."""
-    lines = [
-        f"{plain(facts.axis.words)} %{{{key}:.4~g}} {plain(facts.axis.shown.unit)}" for key, facts in axes.items()
-    ]
-    return "<br>".join(["<b>%{customdata}</b>", *lines]) + "<extra></extra>"
 
 
 def ring(size: float) -> dict[str, Any]:

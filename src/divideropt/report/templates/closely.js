@@ -112,10 +112,10 @@ function tellComparison() {
 
 function followClosely() {
   byId("choice").addEventListener("change", (event) => pick(event.target.value, "choice"));
-  follow(() => {
+  followThen(() => {
     tellChoice();
     tellDetails(selection.lead === null ? undefined : rowOf.get(selection.lead));
     tellComparison();
-    return tellResponse();
   });
+  followThen(tellResponse);
 }

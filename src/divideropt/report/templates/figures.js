@@ -3,6 +3,9 @@
 const shown = new Map(); // element's id → figure that is drawn there
 const NARROW = 600; // [px]
 const QUIET = 2000; // without a touch, before WebGL is drawn where nobody looks [ms]
+const PAGE = { portrait: 900, landscape: 620 }; // that any paper has room for [px]
+const SMALLEST = 0.5; // that a figure is shrunk to before its parts move together
+const STEADY = 100; // that a place has its width before a figure follows [ms]
 const DIMMED = 0.12; // opacity of what is not selected
 
 let themed = null; // kept until the theme changes: to ask for it makes the browser style the whole page
@@ -40,15 +43,33 @@ function coloured(figure) {
       layout.scene[key] = { ...layout.scene[key], ...axis, gridcolor: t.line, showbackground: false, zeroline: false };
     }
   }
-  if (onPaper()) layout.width = byId(figure.id).clientWidth; // plotly would ask later, when the page has been printed
+  layout.height = fitHeight(figure);
+  figure.width = byId(figure.id).clientWidth;
+  layout.width = figure.width || undefined; // plotly would ask later, when the page may have been printed or be as wide as before
   for (const shape of layout.shapes || []) shape.line.color = t.quiet;
   const data = figure.data.map((trace) => {
     const copy = { ...trace };
     for (const key of ["line", "marker"]) if (trace[key]) copy[key] = exchanged(trace[key], t);
+    if (figure.axes && trace.customdata) copy.text = trace.text ??= labelsOf(figure, trace);
     if (isRing(trace)) copy.marker = { ...copy.marker, color: t.ink, line: { ...copy.marker.line, color: t.ink } };
     return copy;
   });
   return { data: isDotted(figure) ? withoutMarks(figure, data) : data, layout };
+}
+
+/** What a point's label says below its name: Plotly writes 12345 as 1.2e+4. */
+function labelsOf(figure, trace) {
+  const axes = figure.axes.map((objective, k) => ({ values: trace["xyz"[k]], words: plain(fields[firstObjective + objective].words), unit: plain(fields[firstObjective + objective].shown) }));
+  return trace.customdata.map((_, i) => axes.map(({ values, words, unit }) => words + " " + number(values[i]) + " " + unit).join("<br>"));
+}
+
+/** A figure's height [px]; on paper it fits a page: it is made smaller as far as it can be read, then lower. */
+function fitHeight({ id, layout }) {
+  const most = onPaper() ? PAGE[document.documentElement.clientWidth > 850 ? "landscape" : "portrait"] : Infinity;
+  const share = Math.min(1, Math.max(SMALLEST, most / layout.height));
+  const height = Math.min(layout.height, most / share);
+  Object.assign(byId(id).style, { height: height + "px", zoom: share < 1 ? share : "" });
+  return height;
 }
 
 const isRing = (trace) => trace.name === "selected" && trace.mode === "markers";
@@ -88,15 +109,17 @@ const isProjection = (figure) => figure.axes && figure.axes.length === 2;
 async function draw(figure) {
   const element = byId(figure.id);
   if (!element) return;
-  element.style.height = figure.layout.height + "px"; // plotly forgets it when the window changes its size
+  figure.begun = true;
   const { data, layout } = coloured(figure);
   await Plotly.newPlot(element, data, layout, configOf(figure));
   if (element.querySelector(".no-webgl, a[href]")) return leaveOut(element); // plotly's own words, with a link
   element.setAttribute("role", "group"); // no image: plotly's buttons in it are reached by Tab
   for (const drawing of element.querySelectorAll(".main-svg, .gl-container")) drawing.setAttribute("aria-hidden", "true"); // the label says what it is; the numbers are in the tables
   shown.set(figure.id, figure);
-  if (!figure.axes) return;
+  widths.observe(element);
   if (isDotted(figure)) beginDots(figure);
+  if (figure.stale) redraw(figure);
+  if (!figure.axes) return;
   const later = (action) => setTimeout(action, 0); // plotly has not done yet when it tells
   element.on("plotly_click", (event) => later(() => pick(event.points[0].customdata, figure.id, event.event)));
   element.on("plotly_selected", (event) => { // plotly tells of one also when it draws again
@@ -104,6 +127,20 @@ async function draw(figure) {
     later(() => choose(isDotted(figure) ? idsOutlined(figure) : event.points.map((point) => point.customdata), figure.id));
   });
   element.on("plotly_deselect", () => later(() => (isDotted(figure) && !selection.active ? showMore(figure) : clearSelection())));
+}
+
+/** A figure is as wide as its place whatever changes that: the window, the paper, or that it is unfolded. */
+const widths = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    clearTimeout(target.fitting);
+    if (onPaper()) fit(target);
+    else target.fitting = setTimeout(() => fit(target), STEADY);
+  }
+});
+
+function fit(element) {
+  const figure = shown.get(element.id);
+  if (element.clientWidth && element.clientWidth !== figure.width) redraw(figure);
 }
 
 const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action, { timeout: 1000 }) : setTimeout(action, 100));
@@ -137,27 +174,41 @@ function drawWhenSeen(figure, able) {
 }
 
 async function see(figure) {
-  const element = byId(figure.id);
-  if (figure.begun) return figure.stale ? redraw(figure) : undefined;
-  figure.begun = true;
+  if (figure.begun) {
+    if (figure.stale) redraw(figure);
+    return;
+  }
   markFigure(figure);
   await draw(figure);
-  element.dataset.drawn = "yes";
-  return figure.stale ? redraw(figure) : undefined; // another selection was made meanwhile
+  copyForPaper(byId(figure.id));
+  byId(figure.id).dataset.drawn = "yes";
 }
 
+/** Draw a figure as the selection, the theme and its place now are, at once; WebGL that nobody sees, when it is seen. */
 function redraw(figure) {
-  figure.stale = Boolean(figure.away || (figure.begun && !shown.has(figure.id)));
-  if (figure.stale || !shown.has(figure.id)) return undefined;
+  figure.stale = Boolean((figure.away && !onPaper()) || (figure.begun && !shown.has(figure.id)));
+  if (figure.stale || !shown.has(figure.id)) return;
   const element = byId(figure.id);
   const { data, layout } = coloured(figure);
-  if (isDotted(figure)) dot(figure, true);
-  else if (isProjection(figure)) {
+  if (isProjection(figure) && !isDotted(figure)) {
     layout.selections = selection.by === figure.id ? element.layout.selections : []; // outlines of boxes
     layout.selectionrevision = selection.by === figure.id ? figure.id : String(Math.random());
   }
   figure.drawing = true;
-  return Plotly.react(element, data, layout, configOf(figure)).finally(() => { figure.drawing = false; });
+  Plotly.react(element, data, layout, configOf(figure)).finally(() => { figure.drawing = false; });
+  if (isDotted(figure)) dot(figure, true);
+  if (figure.webgl) copyForPaper(element);
+}
+
+/** Chromium prints of a WebGL canvas the last frame, which has the screen's size and colours: a copy of it is printed. */
+function copyForPaper(element) {
+  if (!onPaper()) return;
+  const { glplot } = element._fullLayout.scene._scene;
+  glplot.redraw();
+  const { width, height } = glplot.canvas;
+  const copy = element.querySelector(".printed") ?? element.appendChild(make("canvas", undefined, { class: "printed", "aria-hidden": "true" }));
+  [copy.width, copy.height] = [width, height]; // what was in it is gone
+  copy.getContext("2d", { willReadFrequently: true }).drawImage(glplot.canvas, 0, 0);
 }
 
 // --- the selection in the figures of the front ---
@@ -174,24 +225,33 @@ function markFigure(figure) {
     }
   }
   const over = figure.data.find((trace) => trace.name === "chosen"); // WebGL has one opacity a trace
-  if (over) fill(over, figure.data.filter((trace) => trace.customdata && trace !== over), isChosen);
+  if (over) fill(figure, over, figure.data.filter((trace) => trace.customdata && trace !== over), isChosen);
   const ring = figure.data.find(isRing);
   figure.axes.forEach((objective, i) => {
     ring["xyz"[i]] = selection.lead === null ? [] : [columns[firstObjective + objective][rowOf.get(selection.lead)]];
   });
 }
 
-function fill(over, traces, isChosen) {
+function fill(figure, over, traces, isChosen) {
   const places = traces.flatMap((trace) => [...trace.customdata.keys()].filter((i) => isChosen(trace.customdata[i])).map((i) => [trace, i]));
-  for (const key of ["x", "y", "z", "customdata"]) over[key] = places.map(([trace, i]) => trace[key][i]);
+  for (const trace of traces) trace.text ??= labelsOf(figure, trace);
+  for (const key of ["x", "y", "z", "customdata", "text"]) over[key] = places.map(([trace, i]) => trace[key][i]);
   for (const key of ["color", "symbol"]) over.marker[key] = places.map(([trace]) => trace.marker[key]);
 }
 
 function followInFigures() {
   const fronts = report.figures.filter((figure) => figure.axes);
-  follow(() => Promise.all(fronts.map((figure) => {
-    if (isDotted(figure)) return followInDots(figure);
-    markFigure(figure);
-    return redraw(figure);
-  })));
+  follow(() => fronts.filter(isDotted).forEach(followInDots));
+  for (const figure of fronts.filter((other) => !isDotted(other))) followThen(() => followInFigure(figure));
+}
+
+async function followInFigure(figure) {
+  if (figure.webgl) {
+    if (!figure.begun) return; // it begins with the selection in it
+    await idle();
+    if (figure.told === told) return; // whoever was overtaken has drawn the same
+  }
+  figure.told = told;
+  markFigure(figure);
+  await redraw(figure);
 }

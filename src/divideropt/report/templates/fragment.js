@@ -22,7 +22,9 @@ function writeFragment() {
   const byRun = new Map();
   for (const id of selection.ids) {
     const [run, place] = id.split("/");
-    if (RUN.test(run)) byRun.set(run, [...(byRun.get(run) || []), place]);
+    if (!RUN.test(run)) continue;
+    if (!byRun.has(run)) byRun.set(run, []);
+    byRun.get(run).push(place);
   }
   const list = [...byRun].map(([run, places]) => run + "/" + places.join(".")).join(",");
   const lead = selection.ids.size > 1 ? "&show=" + selection.lead : "";
@@ -41,7 +43,7 @@ function restore() {
 }
 
 function followInAddress() {
-  follow(writeFragment);
+  followThen(writeFragment);
   window.addEventListener("hashchange", () => {
     if (restore() !== undefined) return;
     if (location.hash === "" && selection.active) clearSelection();

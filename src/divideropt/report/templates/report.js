@@ -13,11 +13,6 @@ function showQuantity(name) { // one quantity over every parameter of a study
   return redraw(figure);
 }
 
-/** What was folded away when it was drawn had no width; what was printed has the paper's. */
-function resizeIn(part) {
-  for (const element of part.querySelectorAll(".plot")) if (shown.has(element.id) && element.clientWidth) Plotly.Plots.resize(element);
-}
-
 /** Make tables smaller that are wider than the paper. */
 function fitToPaper() {
   for (const frame of document.querySelectorAll(".scroll")) {
@@ -32,13 +27,11 @@ function unfoldForPaper() {
   for (const details of document.querySelectorAll(onPaper() ? "details:not([open])" : "details[data-folded]")) {
     details.toggleAttribute("data-folded", onPaper());
     details.open = onPaper();
-    resizeIn(details);
   }
 }
 
 async function beginSelecting() {
   followInTables();
-  followInFigures();
   followClosely();
   followInSketch();
   followInSheet();
@@ -46,6 +39,7 @@ async function beginSelecting() {
   beginParallel();
   followInBar();
   followInAddress();
+  followInFigures(); // after the others: there may be WebGL among them
   document.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && selection.active) clearSelection();
   });
@@ -82,17 +76,15 @@ async function begin() {
         fitToPaper();
       }
       shown.forEach(redraw);
-      if (media === "print" && !onPaper()) resizeIn(document);
       if (media === "print") pictures.filter(() => able).forEach(see);
       if (report.selected) layOut();
     });
   }
-  window.addEventListener("resize", () => { // plotly follows no change where a figure has a width of its own
+  window.addEventListener("resize", () => {
     if (!onPaper()) return;
     fitToPaper();
-    shown.forEach(redraw);
+    shown.forEach((_, id) => fit(byId(id))); // at once: the page may be printed next
   });
-  for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => resizeIn(details));
   document.documentElement.dataset.drawn = Math.round(performance.now()); // since the navigation [ms]
   if (able) for (const figure of pictures) whenQuiet(() => see(figure)); // for who scrolls quickly, and for pictures of the page
 }

@@ -6,8 +6,9 @@ const selection = {
   lead: null, // the design shown closely
   by: "", // the view it was made in: the id of its element
 };
-const followers = [];
-const follow = (follower) => followers.push(follower);
+const followers = { first: [], then: [] };
+const follow = (follower) => followers.first.push(follower); // what is cheap: one sees at once what was selected
+const followThen = (follower) => followers.then.push(follower); // when that is on the screen
 
 /** Select designs, unknown ones left out; returns when every view has followed. */
 function choose(wanted, by, lead) {
@@ -43,4 +44,32 @@ function clearSelection() {
   return tell();
 }
 
-const tell = () => Promise.all(followers.map((follower) => follower(selection)));
+const TASK = 30; // how long views follow before what was touched meanwhile has its turn [ms]
+
+/** The next frame is on the screen; of a page in the background no frame is drawn. */
+const painted = () => new Promise((done) => {
+  requestAnimationFrame(() => setTimeout(done));
+  setTimeout(done, 100);
+});
+const isReady = () => "ready" in document.documentElement.dataset; // else there is nothing to be seen yet
+
+let told = 0; // selections so far
+
+/** Tell everybody of the selection; whom another one overtakes is told of that one only. */
+async function tell() {
+  told += 1;
+  const turn = told;
+  document.documentElement.dataset.following = "yes"; // until all have
+  for (const follower of followers.first) follower();
+  if (isReady()) await painted();
+  let began = performance.now();
+  for (const follower of followers.then) {
+    if (isReady() && performance.now() - began > TASK) {
+      await new Promise((done) => setTimeout(done));
+      began = performance.now();
+    }
+    if (turn !== told) return;
+    await follower();
+  }
+  if (turn === told) delete document.documentElement.dataset.following;
+}

@@ -124,5 +124,5 @@ function followInSheet() {
   byId("step").addEventListener("change", tellSheet);
   byId("sheet-csv").addEventListener("click", () => save(sheetCsv(sheetOf(selection.lead)), name() + ".csv", "text/csv"));
   byId("sheet-svg").addEventListener("click", () => save(sheetSvg(sheetOf(selection.lead)), name() + ".svg", "image/svg+xml"));
-  follow(tellSheet);
+  followThen(tellSheet);
 }

@@ -103,7 +103,11 @@ function tellSketch() {
   const { lead } = selection;
   const group = byId("sketch-drawn");
   const others = [...selection.ids].filter((id) => id !== lead);
-  const traced = others.filter((id) => !dimensionsOf(rowOf.get(id)).includes(null)).slice(0, MOST_TRACED);
+  const traced = [];
+  for (const id of others) {
+    if (traced.length === MOST_TRACED) break; // of thousands the dimensions are not asked for
+    if (!dimensionsOf(rowOf.get(id)).includes(null)) traced.push(id);
+  }
   byId("sketched-others").hidden = others.length === 0;
   byId("sketched-others").textContent = "Thin lines: " + (traced.length < others.length ? "the first " + traced.length + " of " : "the outlines of ") + counted(others.length, "other selected design") + ".";
   const values = lead === null ? [null] : dimensionsOf(rowOf.get(lead));
@@ -124,5 +128,5 @@ function followInSketch() {
   if (!report.sketch) return;
   const parsed = new DOMParser().parseFromString('<svg xmlns="http://www.w3.org/2000/svg">' + report.sketch.defs + "</svg>", "image/svg+xml");
   byId("sketch-defs").replaceWith(document.importNode(parsed.documentElement.firstChild, true));
-  follow(tellSketch);
+  followThen(tellSketch);
 }

@@ -51,9 +51,10 @@ function listenTo(table, act) {
 function tellRows() {
   for (const row of document.querySelectorAll("tr[data-id]")) {
     const id = row.dataset.id;
-    row.setAttribute("aria-selected", String(selection.ids.has(id)));
+    const isSelected = String(selection.ids.has(id));
+    if (row.getAttribute("aria-selected") !== isSelected) row.setAttribute("aria-selected", isSelected); // only what changes is styled anew
     if (id === selection.lead) row.setAttribute("aria-current", "true");
-    else row.removeAttribute("aria-current");
+    else if (row.hasAttribute("aria-current")) row.removeAttribute("aria-current");
   }
   const first = document.querySelector("#compared tbody tr");
   if (first && !document.querySelector("#compared tbody tr[tabindex='0']")) first.tabIndex = 0;
@@ -81,5 +82,5 @@ function followInTables() {
     frontTableSeen = entries[entries.length - 1].isIntersecting;
     if (frontTableSeen) showCurrentRow();
   }).observe(byId("front-table").closest(".tall"));
-  follow(tellRows);
+  followThen(tellRows);
 }
