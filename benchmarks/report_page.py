@@ -83,7 +83,8 @@ INTRODUCTION = """## A large report
 of the 25,000 evaluations that did not fail, opens it in headless Chromium and writes this section. Interactive is
 when a brush on an axis, made as soon as the page is drawn, is followed by every view and on the screen: since the
 navigation by the clock, and in processor time of the page's main thread, which counts where others use the machine. A
-brush is timed from the key to the screen, with the 60 ms that the page waits for another.
+brush is timed from the key to the screen, with the 60 ms that the page waits for another. Then kinds of selection, in
+medians since the input: until lines, points and the count in the bar have followed, and until all views have.
 """
 
 PATIENCE = 120_000

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from divideropt import units
-from divideropt.units import format_measure, parse_measure
+from divideropt.units import LARGEST, LEAST, format_measure, parse_measure, parse_number
 
 # The right-hand sides are the definitions of the units; each must come out as the nearest float.
 EXACT = [
@@ -128,8 +128,40 @@ def test_nothing_but_a_number_and_a_unit_reaches_pint(value: str, monkeypatch: p
         parse_measure(value, "m")
 
 
+@pytest.mark.parametrize("value", [1e50, -1e50, 1e-50, "0.01e52 m", "1e-47 mm", 0.0, "0 m"])
+def test_the_largest_and_the_least_magnitude_pass(value: object) -> None:
+    unit = "m" if isinstance(value, str) else ""
+    assert abs(parse_measure(value, unit)) in (0.0, 1e-50, 1e50)
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("1.7e308 m", "1.7e+308 m is too large to be computed with; the largest magnitude is 1e+50 m"),
+        ("-1e51 m", "-1e+51 m is too large"),
+        ("1e48 km", "1e+51 m is too large"),
+        ("1e-310 m", "1e-310 m is too small to be computed with; the least magnitude is 1e-50 m, or 0"),
+        ("-1e-48 mm", "-1e-51 m is too small"),
+    ],
+)
+def test_what_sums_and_squares_would_lose_is_refused(value: str, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        parse_measure(value, "m")
+    assert str(caught.value).startswith(words)
+    assert str(caught.value).endswith("check the exponent and the unit")
+
+
+def test_a_plain_number_may_be_small_but_not_too_large() -> None:
+    assert parse_number("1e-310") == 1e-310
+    with pytest.raises(ValueError, match="1e\\+60 is too large"):
+        parse_number("1e60")
+
+
+MAGNITUDE = st.floats(min_value=LEAST, max_value=LARGEST)
+
+
 @given(
-    st.floats(allow_nan=False, allow_infinity=False),
+    st.one_of(st.just(0.0), MAGNITUDE, MAGNITUDE.map(lambda value: -value)),
     st.sampled_from(["m", "Pa", "%", "", "1/s", "m^3/s", "m^3", "kg/m^3", "s"]),
 )
 def test_a_written_measure_reads_back_as_the_same_bits(value: float, unit: str) -> None:

@@ -22,6 +22,13 @@ UNIT = rf"(?:1/{_FACTOR}|{_FACTOR})(?:[*/]{_FACTOR}){{0,5}}"
 LONGEST = 80
 """Characters of a measure."""
 
+LARGEST = 1e50
+"""Largest magnitude of a number that is computed with, far beyond what is measured in any unit: sums, squares and
+products of some such numbers, and quotients of two, still are numbers."""
+
+LEAST = 1e-50
+"""Least magnitude of one that is not 0."""
+
 _TENS = {"": 0, "G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6}
 """Prefixes as powers of ten."""
 
@@ -73,19 +80,19 @@ def parse_measure(value: object, unit: str) -> float:
     if given is None:
         return _bare(float(number), unit)
     if given == unit:
-        return _finite(float(number))
-    return _finite(float(Decimal(number) * _factor(given, unit)))
+        return _computable(float(number), unit)
+    return _computable(float(Decimal(number) * _factor(given, unit)), unit)
 
 
 def parse_number(text: str) -> float:
     """Read a plain decimal number: no unit, no `1_000`, no `nan`, no digits but 0 to 9.
 
     Raises:
-        ValueError: It is no such number, or too large for one.
+        ValueError: It is no such number, or too large to be computed with.
     """
     if len(text) > LONGEST or not _PLAIN.fullmatch(text):
         raise ValueError(f"{text[:LONGEST]!r} is not a number")
-    return _finite(float(text))
+    return _bounded(float(text), "")
 
 
 def format_measure(value: float, unit: str) -> str:
@@ -96,13 +103,31 @@ def format_measure(value: float, unit: str) -> str:
 def _bare(number: float, unit: str) -> float:
     if unit:
         raise ValueError(f"{number:g} has no unit; write {number:g} {unit}, or the same in any unit of that kind")
-    return _finite(number)
+    return _computable(number, "")
 
 
-def _finite(number: float) -> float:
+def _computable(number: float, unit: str) -> float:
+    if number and abs(number) < LEAST:
+        raise ValueError(
+            f"{_written(number, unit)} is too small to be computed with; the least magnitude is "
+            f"{_written(LEAST, unit)}, or 0; check the exponent and the unit"
+        )
+    return _bounded(number, unit)
+
+
+def _bounded(number: float, unit: str) -> float:
     if number - number != 0.0:
         raise ValueError(f"{number} is not a finite number")
+    if abs(number) > LARGEST:
+        raise ValueError(
+            f"{_written(number, unit)} is too large to be computed with; the largest magnitude is "
+            f"{_written(LARGEST, unit)}; check the exponent and the unit"
+        )
     return number
+
+
+def _written(number: float, unit: str) -> str:
+    return f"{number:g} {unit}".rstrip()
 
 
 def _wanted(unit: str) -> str:

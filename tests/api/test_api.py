@@ -197,7 +197,7 @@ def test_export_is_the_command(ran, tmp_path):
 
 
 def test_a_failed_design_is_a_value():
-    response = divideropt.simulate({"spool_radius": "1e300 m"})
+    response = divideropt.simulate({"spool_radius": "1e-40 m"})
     assert response.outcome == "no_equilibrium"
     assert response.text
     assert response.quantities["value"].isna().any()

@@ -149,6 +149,13 @@ def test_fronts_status_report_and_tables_know_it(store):
     assert [s.run for s in report.comparison.scores] == ["nsga2-1-branch-1", "nsga2-2", "complex-1"]
     assert {line.run for track in report.tracks for line in track.lines} == set(names[1:])
     assert divideropt.compare(store).table["run"].tolist() == ["nsga2-1-branch-1", "nsga2-2", "complex-1"]
+    assert [r.shared for r in status.runs] == [0, 36, 0, 0]
+    assert report.failing.designs == 60 + (96 - 36) + 96 + 60  # what both have, once
+    assert sum(sum(run.own.values()) for run in report.runs) == report.failing.designs
+    assert report.tried.considered + report.tried.failed == report.failing.designs
+    said = CliRunner().invoke(commands, ["status", str(store)]).stdout
+    assert "nsga2-1-branch-1: 96 of 96 evaluations (" in said
+    assert "), the first 36 of them another run's; best" in said
     assert export_store(Store(store), "parquet").evaluations == 60 + 96 + 96 + 60
     assert len(divideropt.open(store).front("nsga2-1-branch-1")) > 0
 

@@ -111,7 +111,7 @@ def test_a_design_of_a_store_is_the_one_that_was_logged(tmp_path: Path):
     assert said.write(tmp_path / "sheet.svg").read_text("utf-8").startswith("<svg ")
     assert list(pd.read_csv(said.write(tmp_path / "sheet.csv"))["name"]) == list(said.table["name"])
     assert "spool diameter" in str(said)
-    with pytest.raises(UsageError, match="has 0 evaluations of a run nsga2-1-branch-1; name one"):
+    with pytest.raises(UsageError, match="has no evaluation of a run nsga2-1-branch-1; its runs are nsga2-1"):
         sheet(tmp_path / "store", "nsga2-1-branch-1/6")
     for wrong in ("nsga2-1/900", "nsga2-2/0", "nonsense", "../nsga2-1/1"):
         with pytest.raises(UsageError, match=r"nsga2-|no design's id"):
@@ -123,11 +123,10 @@ def test_a_design_of_a_store_is_the_one_that_was_logged(tmp_path: Path):
 @pytest.mark.parametrize(
     ("settings", "step", "words"),
     [
-        ([], "10 mm", "stem_diameter is 0.0048 m, .* would be 0; take a step below 0.0096 m"),
+        ([], "10 mm", "groove_width is 1 mm, .* 10 mm it would be 0; take a step below 2 mm"),
         (["centred_opening=0.99"], "1 mm", "centred_opening would be 1, but must be above 0 and below 1"),
-        ([], "0 mm", "a step is above 0"),
-        ([], "0.1", "has no unit"),
-        ([], "1 s", "of another kind"),
+        ([], "0 mm", "is no length above 0"),
+        ([], "0.1", "is no length above 0"),
         (["spool_radius=-1 mm"], "0.1 mm", "must be above 0"),
         (["nonsense=1 mm"], "0.1 mm", "is no parameter"),
     ],

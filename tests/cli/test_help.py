@@ -76,5 +76,5 @@ def test_examples_run_one_after_the_other_in_an_empty_folder(tmp_path):
 def _make_smaller(campaign: Path) -> None:
     if campaign.exists():
         text = campaign.read_text(encoding="utf-8")
-        text = re.sub(r"generations: \d+", "generations: 5", re.sub(r"evaluations: \d+", "evaluations: 210", text))
+        text = re.sub(r"generations: \d+", "generations: 8", re.sub(r"evaluations: \d+", "evaluations: 210", text))
         campaign.write_text(text, encoding="utf-8")

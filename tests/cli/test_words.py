@@ -1,5 +1,7 @@
 """What a slip of the pen is answered: what may have been meant, and where the other thing is."""
 
+import json
+import os
 import re
 import shutil
 import subprocess
@@ -154,3 +156,16 @@ def test_check_refuses_names_that_run_would_refuse(one, monkeypatch, capsys):
             main()
         assert left.value.code == 2
         assert "batch: the model gives this name" in capsys.readouterr().err
+
+
+def test_an_output_without_greek_letters_has_them_as_escapes(tmp_path):
+    """And a mistake in a path that goes through a file is a mistake, not the disk's."""
+    (tmp_path / "file").touch()
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    call = [sys.executable, "-m", "divideropt"]
+    shown = subprocess.run([*call, "schema"], env=environment, capture_output=True, check=True)
+    assert json.loads(shown.stdout)["title"] == "divideropt campaign"
+    assert b"\\u03bc" in shown.stdout
+    wrong = subprocess.run([*call, "status", str(tmp_path / "file" / "x")], capture_output=True, check=False)
+    assert wrong.returncode == 2
+    assert b"Not a directory; name another path" in wrong.stderr

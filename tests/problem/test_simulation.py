@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from divideropt.models import Outcome
+from divideropt.models import Outcome, Verdict
 from divideropt.models.divider import PARAMETERS, Divider, parameter_set
 from divideropt.problem import simulate
 from toy_model import Toy
@@ -31,6 +31,50 @@ def test_only_the_guilty_design_is_blamed():
     assert np.isnan(quantities[1]).all()
     honest, _ = Toy().evaluate(np.array([[0.2, 0.5, 0.5]]))
     assert np.array_equal(quantities[0], honest[0])
+
+
+class Vast(Toy):
+    def evaluate(self, designs):
+        return np.array([[1.7e308, -1e51, 1e50], [1e-310, -1e-51, -1e-50]]), [Verdict(Outcome.OK)] * 2
+
+
+def test_a_quantity_that_nothing_can_be_computed_with_is_infinite_or_zero():
+    fixed = {name: p.default for name, p in Vast().parameters.items()}
+    quantities, verdicts = simulate(Vast(), fixed, ["x1"], np.array([[0.2], [0.3]]))
+    assert quantities.tolist() == [[np.inf, -np.inf, 1e50], [0.0, 0.0, -1e-50]]
+    assert all(verdict.ok for verdict in verdicts)
+
+
+class Careless(Toy):
+    def __init__(self, answer):
+        super().__init__()
+        self.answer = answer
+
+    def evaluate(self, designs):
+        return self.answer(*super().evaluate(designs))
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda quantities, verdicts: None, "TypeError"),
+        (
+            lambda quantities, verdicts: (quantities[:, :2], verdicts),
+            "(1, 2) and 1 verdicts, where (1, 3) and 1",
+        ),
+        (lambda quantities, verdicts: (quantities, verdicts[1:]), "shape (1, 3) and 0 verdicts"),
+        (lambda quantities, verdicts: (quantities, ["ok"] * len(verdicts)), "gives 'ok', where a Verdict"),
+        (lambda quantities, verdicts: (quantities, [Verdict("bad")] * len(verdicts)), "with an Outcome is due"),
+        (lambda quantities, verdicts: ([["a", "b", "c"]] * len(verdicts), verdicts), "could not convert"),
+    ],
+)
+def test_a_model_that_answers_with_anything_else_breaks_down_and_the_log_stays_sound(answer, words):
+    model = Careless(answer)
+    fixed = {name: p.default for name, p in model.parameters.items()}
+    quantities, verdicts = simulate(model, fixed, ["x1"], np.array([[0.2], [0.3]]))
+    assert np.isnan(quantities).all()
+    assert [v.outcome for v in verdicts] == [Outcome.CRASHED] * 2
+    assert words in verdicts[0].text
 
 
 def test_absurd_dimensions_are_a_row_like_any_other():

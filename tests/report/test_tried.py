@@ -12,7 +12,7 @@ from divideropt.report.tried import MOST_TRIED, read_tried
 
 def log(values: np.ndarray, violation: np.ndarray) -> SimpleNamespace:
     """What is asked of a log's summary."""
-    return SimpleNamespace(told=Told(values, violation[:, None]))
+    return SimpleNamespace(told=Told(values, violation[:, None]), shared=0)
 
 
 def test_all_are_kept_where_they_are_few_but_those_that_failed():

@@ -133,6 +133,7 @@ def test_a_part_that_lost_a_batch_is_noticed(tmp_path, problem):
         ("batch", 7, "batch 0 is missing"),
         ("x2", None, "nsga2-1/3 has a variable that is no number"),
         ("x2", float("inf"), "nsga2-1/3 has a variable that is no number"),
+        ("f1", 1.7e308, r"nsga2-1/3 has a quantity beyond 1e\+50 that is not infinite"),
     ],
 )
 def test_what_no_run_can_have_logged_is_refused_by_the_files_name(tmp_path, problem, column, value, words):
@@ -140,7 +141,7 @@ def test_what_no_run_can_have_logged_is_refused_by_the_files_name(tmp_path, prob
     part = next((tmp_path / "evaluations" / "nsga2-1").glob("*.parquet"))
     table = pq.read_table(part)
     place, cells = table.schema.get_field_index(column), table[column].to_pylist()
-    for row in [3] if column == "x2" else range(table.num_rows):
+    for row in [3] if column in ("x2", "f1") else range(table.num_rows):
         cells[row] = value
     field = table.schema.field(place)
     part.write_bytes(worded(table.set_column(place, field, pa.array(cells, field.type))))

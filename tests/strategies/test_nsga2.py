@@ -92,3 +92,12 @@ def test_it_is_so_with_a_variable_whose_children_are_often_duplicates():
     mine, theirs = (run(hopeless, 30, 12, 5, problem) for run in (ours, pymoos))
     assert [m.tobytes() for m in mine] == [t.tobytes() for t in theirs]
     assert any(len(m) < 30 for m in mine)
+
+
+def test_a_variable_of_tiny_numbers_is_searched_as_any_other():
+    """A permeability in m^2, say: pymoo takes designs that are closer than 1e-16 for one, whatever their unit."""
+    parameter = toy_problem().model.parameters["x1"]
+    tiny = DesignSpace((Variable(parameter, 1e-17, 1e-15), Variable(parameter, 0.0, 1e-50)))
+    problem = dataclasses.replace(toy_problem(), space=tiny)
+    asked = ours(lambda designs: Told(designs, np.zeros((len(designs), 1))), 20, 5, 1, problem)
+    assert [len(np.unique(designs, axis=0)) for designs in asked] == [20] * 5

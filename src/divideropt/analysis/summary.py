@@ -44,8 +44,10 @@ class Summary:
         examples: A sentence of the first simulation that ended so.
         best: The best by goal attainment; None where no design is feasible or an objective has no goal.
         front: The feasible non-dominated rows in the order of evaluation, the first of equals, without `batch`.
-        failures: Where in the box simulations failed.
-        breaches: Which bounds the others break.
+        failures: Where in the box simulations failed, of its own evaluations.
+        breaches: Which bounds the others of these break.
+        shared: How many of the first are those of the run from which this one branched, and are counted there.
+        own: How many of the rest ended how.
     """
 
     told: Told
@@ -55,6 +57,8 @@ class Summary:
     front: pa.Table
     failures: Failures
     breaches: Breaches
+    shared: int
+    own: Mapping[str, int]
 
     @property
     def evaluations(self) -> int:
@@ -67,18 +71,20 @@ def repeatable(outcomes: Mapping[str, int]) -> bool:
     return not any(outcome in outcomes for outcome in UNREPEATABLE)
 
 
-def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) -> Summary:
+def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema, shared: int = 0) -> Summary:
     """Sum up a log.
 
     Args:
         log: Its parts, in their order.
         problem: What is optimised.
         schema: The log's columns.
+        shared: How many of its first rows are another run's, and are counted there.
     """
     told = [Told(np.empty((0, len(problem.objectives))), np.empty((0, 1)))]
     nothing = schema.evaluations(schema.arrow.empty_table())
     failures, breaches = failures_of(nothing, problem.space), breaches_of(problem.tell(nothing))
     outcomes: Counter[str] = Counter()
+    others: Counter[str] = Counter()
     examples: dict[str, str] = {}
     best, front, values, rows = None, schema.arrow.empty_table(), told[0].F, 0
     for part in log:
@@ -87,8 +93,11 @@ def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) ->
             outcomes[str(verdict.outcome)] += count
             examples.setdefault(str(verdict.outcome), verdict.text)
         fresh = problem.tell(evaluations)
-        failures = all_failures([failures, failures_of(evaluations, problem.space)])
-        breaches = all_breaches([breaches, breaches_of(fresh)])
+        begin = min(max(0, shared - rows), part.num_rows)
+        others.update(str(verdict.outcome) for verdict in evaluations.verdicts[:begin])
+        own = evaluations.part(begin, part.num_rows)
+        failures = all_failures([failures, failures_of(own, problem.space)])
+        breaches = all_breaches([breaches, breaches_of(Told(fresh.F[begin:], fresh.G[begin:]))])
         found = best_attainment(fresh, problem)
         if found is not None and (best is None or found[1] < best.value):
             best = Best(rows + found[0], found[1], part.take(pa.array([found[0]])))
@@ -101,4 +110,6 @@ def summarise(log: Iterable[pa.Table], problem: Problem, schema: TableSchema) ->
         told.append(Told(fresh.F, fresh.violation[:, None]))
         rows += part.num_rows
     together = Told(np.concatenate([t.F for t in told]), np.concatenate([t.G for t in told]))
-    return Summary(together, outcomes, examples, best, front.drop_columns(["batch"]), failures, breaches)
+    own_outcomes = outcomes - others
+    designs = front.drop_columns(["batch"])
+    return Summary(together, outcomes, examples, best, designs, failures, breaches, shared, own_outcomes)

@@ -9,7 +9,7 @@ from divideropt.api.given import Design, Given, campaign_given, listen, setting
 from divideropt.api.stores import Results
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.plan import build_model
-from divideropt.campaign.sheet import Sheet, sheet_table
+from divideropt.campaign.sheet import Sheet, sheet_table, sheet_yaml
 from divideropt.campaign.sheet import sheet as sheet_of
 from divideropt.errors import UsageError
 from divideropt.report import sheet_svg, sheet_text
@@ -53,16 +53,19 @@ class DimensionSheet:
         return sheet_svg(self.found)
 
     def write(self, out: Path | str) -> Path:
-        """Write the table (.csv) or the drawing (.svg).
+        """Write the table (.csv), the drawing (.svg), or the design as a campaign's `set:` (.yaml).
 
         Raises:
             UsageError: The name ends otherwise.
             DiskError: The disk refused.
         """
         path = Path(out)
-        if path.suffix not in (".csv", ".svg"):
-            raise UsageError(f"{path}: the name must end in .csv or .svg")
-        text = self.svg if path.suffix == ".svg" else self.table.to_csv(index=False)
+        if path.suffix not in (".csv", ".svg", ".yaml"):
+            raise UsageError(f"{path}: the name must end in .csv, .svg or .yaml")
+        if path.suffix == ".csv":
+            text = self.table.to_csv(index=False)
+        else:
+            text = self.svg if path.suffix == ".svg" else sheet_yaml(self.found)
         publish(path, lambda staged: staged.write_text(text, encoding="utf-8"))
         return path
 

@@ -6,10 +6,12 @@ and no more replayed; a branch may be an origin in turn, of `nsga2-1-branch-2`. 
 """
 
 from dataclasses import replace
-from itertools import islice
+from itertools import islice, pairwise, takewhile
 
+from divideropt.analysis import Summary, summarise
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.plan import Run, plan_runs
+from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
 
 
@@ -21,6 +23,21 @@ def stored_runs(campaign: Campaign, store: Store) -> tuple[Run, ...]:
 def active_runs(campaign: Campaign, store: Store) -> tuple[Run, ...]:
     """List the runs of a campaign that can go on: of each that branched, its last branch."""
     return tuple(_line(planned, store)[-1] for planned in plan_runs(campaign))
+
+
+def summaries(campaign: Campaign, store: Store, problem: Problem, schema: TableSchema) -> dict[str, Summary]:
+    """Sum up the log of every run and branch by its name; what a branch begins with is counted in its origin.
+
+    Raises:
+        StoreError: A log is damaged.
+    """
+    found = {}
+    for planned in plan_runs(campaign):
+        line = _line(planned, store)
+        shared = [0, *(_in_common(store, schema, *pair) for pair in pairwise(line))]
+        for run, count in zip(line, shared, strict=True):
+            found[run.name] = summarise(store.log(run.name, schema).read(), problem, schema, count)
+    return found
 
 
 def branch_off(store: Store, campaign: Campaign, schema: TableSchema, origin: Run, batches: int) -> Run:
@@ -52,6 +69,13 @@ def _line(planned: Run, store: Store) -> list[Run]:
     while store.has_log(_branch(planned, len(found)).name):
         found.append(_branch(planned, len(found)))
     return found
+
+
+def _in_common(store: Store, schema: TableSchema, origin: Run, branch: Run) -> int:
+    """Count the evaluations that a branch begins with: of its origin, up to the first batch that differs."""
+    batches = zip(*(store.log(run.name, schema).replay() for run in (origin, branch)), strict=False)
+    same = takewhile(lambda pair: pair[0].designs.tobytes() == pair[1].designs.tobytes(), batches)
+    return sum(len(batch) for batch, _ in same)
 
 
 def _branch(planned: Run, number: int) -> Run:

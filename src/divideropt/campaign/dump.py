@@ -12,7 +12,7 @@ from divideropt.campaign import schemas
 from divideropt.campaign.config import Campaign, ConstraintConfig, ObjectiveConfig
 from divideropt.campaign.fields import measure_of
 from divideropt.campaign.uncertainty import with_failures
-from divideropt.models import Quantity
+from divideropt.models import Parameter, Quantity
 
 
 def dump_campaign(campaign: Campaign) -> str:
@@ -40,6 +40,11 @@ def dump_campaign(campaign: Campaign) -> str:
     if campaign.uncertainty is not None:
         data["uncertainty"] = campaign.uncertainty.as_written(parameters)
     return _yaml({name: data[name] for name in Campaign.model_fields if name in data})
+
+
+def dump_settings(values: Mapping[str, float], parameters: Mapping[str, Parameter]) -> str:
+    """Write parameters by name as the section `set` of a campaign's model, from which the same bits are read."""
+    return _yaml({"set": _measures(values, parameters)}, in_lines=True)
 
 
 def campaign_schema() -> dict[str, Any]:
@@ -85,10 +90,10 @@ def _written(field: str, value: Any, quantity: Quantity) -> Any:
     return {"weight": value, "worst_of": value, "statistic": value}.get(field) or measure_of(quantity).write(value)
 
 
-def _yaml(data: dict[str, Any]) -> str:
+def _yaml(data: dict[str, Any], *, in_lines: bool = False) -> str:
     yaml = YAML(typ="safe", pure=True)
     yaml.Representer = _CarefulRepresenter
-    yaml.default_flow_style = None  # the innermost collections on one line
+    yaml.default_flow_style = False if in_lines else None  # the innermost collections on one line
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # ruamel annotates it as None
     yaml.allow_unicode = True
     yaml.width = 110

@@ -8,10 +8,10 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field, PlainValidator
 
-from divideropt.campaign.fields import POSITIVE, Measure, Tables, by_name, measure_of
+from divideropt.campaign.fields import FINITE, POSITIVE, Measure, Tables, by_name, measure_of
 from divideropt.campaign.sections import Section, show
 from divideropt.errors import LONGEST_WORDS, UsageError, words_of
-from divideropt.models import Model, Parameter, Quantity
+from divideropt.models import Domain, Model, Parameter, Quantity
 
 LONGEST_TEXT = 1000
 """Characters of a name, a unit, a symbol or a description in a model."""
@@ -77,6 +77,18 @@ def _check_entries(kind: str, what: str, entries: Mapping[Any, object], wanted: 
             )
         if not name.strip() or name != name.strip():
             raise UsageError(f"{show(kind)} has a {what} {show(name)}; a name has a letter, and no space around it")
+        if isinstance(entry, Parameter):
+            _check_number(f"{show(kind)}, {what} {show(name)}", "default", entry.default, FINITE)
+        elif isinstance(entry, Quantity):
+            _check_number(f"{show(kind)}, {what} {show(name)}", "scale", entry.scale, POSITIVE)
+
+
+def _check_number(which: str, attribute: str, number: object, domain: Domain) -> None:
+    """Check a number that a parameter or a quantity brings along: it is computed with as those of a campaign are."""
+    try:
+        Measure("", domain).read(number)
+    except ValueError as error:
+        raise UsageError(f"{which}: its {attribute}: {error}") from None
 
 
 class PluginConfig(Section):

@@ -17,6 +17,9 @@ from divideropt.models.dimensions import Dimensioned
 from divideropt.problem import Evaluations, Problem, simulate
 from divideropt.problem.criteria import Values
 
+MICROMETRE = 1e-6
+"""In m."""
+
 
 @dataclass(frozen=True)
 class Judged:
@@ -67,7 +70,14 @@ def rounded_design(
         ValueError: A dimension would be 0, or a parameter out of its domain, in a sentence.
     """
     row = dict(zip(model.dimensions, model.measured(_row(model, parameters))[0].tolist(), strict=True))
-    rounded = {name: _rounded(name, row[name], step) for name in rounded_names(problem, model) if row[name] != 0.0}
+    exact = {name: row[name] for name in rounded_names(problem, model) if row[name] != 0.0}
+    rounded = {name: _rounded(value, step) for name, value in exact.items()}
+    if not all(rounded.values()):
+        least = min(exact, key=lambda name: abs(exact[name]))
+        raise ValueError(
+            f"{least} is {in_drawing_units(exact[least])}, and rounded to multiples of {in_drawing_units(step)} it "
+            f"would be 0; take a step below {in_drawing_units(2.0 * abs(exact[least]))}"
+        )
     made = dict(model.remade(parameters, rounded))
     for name, value in made.items():
         parameter = model.parameters[name]
@@ -77,6 +87,11 @@ def rounded_design(
                 f"rounded so, {name} would be {value:.6g}{unit}, but must be {parameter.domain}; take a finer step"
             )
     return made
+
+
+def in_drawing_units(length: float) -> str:
+    """Write a length in m as a drawing has it, `0.1 mm`; one below a micrometre in nanometres."""
+    return f"{length * 1e3:.6g} mm" if abs(length) >= MICROMETRE else f"{length * 1e9:.6g} nm"
 
 
 def judge(problem: Problem, model: Dimensioned, designs: Sequence[Mapping[str, float]]) -> list[Judged]:
@@ -123,13 +138,7 @@ def _row(model: Dimensioned, parameters: Mapping[str, float]) -> FloatArray:
     return np.array([[parameters[name] for name in model.parameters]])
 
 
-def _rounded(name: str, value: float, step: float) -> float:
+def _rounded(value: float, step: float) -> float:
     """The multiple of the step that is nearest, as the float that is nearest to it."""
     whole = Decimal(repr(step))
-    count = (Decimal(repr(value)) / whole).to_integral_value(ROUND_HALF_EVEN)
-    if count == 0:
-        raise ValueError(
-            f"{name} is {value:.6g} m, and rounded to multiples of {step:.6g} m it would be 0; take a step below "
-            f"{2.0 * value:.6g} m"
-        )
-    return float(count * whole)
+    return float((Decimal(repr(value)) / whole).to_integral_value(ROUND_HALF_EVEN) * whole)

@@ -14,12 +14,11 @@ from divideropt.analysis import (
     Tally,
     combined_front,
     convergence,
-    summarise,
     tally,
     worth_verifying,
 )
 from divideropt.campaign.attempts import Attempts
-from divideropt.campaign.branches import active_runs, branch_off, stored_runs
+from divideropt.campaign.branches import active_runs, branch_off, stored_runs, summaries
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.crew import Crew
 from divideropt.campaign.dump import dump_campaign
@@ -237,8 +236,7 @@ class Runner:
     ) -> tuple[dict[str, Summary], dict[str, pa.Table]]:
         """Write the fronts, marked with what is known of them; return them, and each run's log summed up."""
         schema = verifier.schema
-        names = sorted(run.name for run in stored_runs(self._campaign, self._store))
-        logs = {name: summarise(self._store.log(name, schema).read(), problem, schema) for name in names}
+        logs = dict(sorted(summaries(self._campaign, self._store, problem, schema).items()))
         fronts = {name: log.front for name, log in logs.items()}
         combined = combined_front(list(fronts.values()), problem, schema)
         asked = self._campaign.verification

@@ -1,6 +1,7 @@
 """A design's dimension sheet: the work of `divideropt sheet`."""
 
 import re
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,10 +9,12 @@ from typing import Any
 
 import pandas as pd
 
+from divideropt.campaign.branches import stored_runs
 from divideropt.campaign.config import Campaign
+from divideropt.campaign.dump import dump_settings
 from divideropt.campaign.load import default_campaign, load_campaign, stored_campaign
-from divideropt.campaign.plan import build_problem, dimensioned
-from divideropt.campaign.rounding import Judged, judge, rounded_design, rounded_names
+from divideropt.campaign.plan import build_problem, dimensioned, dividers
+from divideropt.campaign.rounding import Judged, in_drawing_units, judge, rounded_design, rounded_names
 from divideropt.campaign.sections import show
 from divideropt.campaign.simulate import read_settings
 from divideropt.errors import UsageError
@@ -19,7 +22,7 @@ from divideropt.models.base import VALIDITY
 from divideropt.models.dimensions import Dimensioned, Kind
 from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
-from divideropt.units import parse_measure
+from divideropt.units import format_measure, parse_measure
 
 _ID = re.compile(r"([a-z0-9_]{1,64}-[0-9]{1,20}(?:-branch-[0-9]{1,20})?)/([0-9]{1,18})", re.ASCII)
 
@@ -102,7 +105,7 @@ def sheet(
         try:
             designs.append(rounded_design(problem, model, parameters, width))
         except ValueError as error:
-            raise UsageError(f"--step {step}: {error}") from None
+            raise UsageError(f"--step {show(step)}: {error}") from None
     exact, *rounded = judge(problem, model, designs)
     names = rounded_names(problem, model)
     return Sheet(campaign.name, design or "", problem, model, width, exact, next(iter(rounded), None), names)
@@ -153,6 +156,25 @@ def sheet_table(found: Sheet) -> pd.DataFrame:
         )
     columns = ["section", "name", "symbol", "unit", *titles, "note"]
     return pd.DataFrame(rows, columns=columns).astype(dict.fromkeys(titles, object))
+
+
+def sheet_yaml(found: Sheet) -> str:
+    """Return what a campaign's `model` may have as `set`, as the report's page saves a design: read back to the bit.
+
+    It has the variables, and what else the last column's design has otherwise than the campaign. For the divider a
+    comment has the line that simulates it.
+    """
+    design = found.columns[-1].parameters
+    variables = found.problem.space.names
+    chosen = {n: v for n, v in design.items() if n in variables or v != found.problem.fixed[n]}
+    what = f"design {found.design} of campaign" if found.design else "a design of campaign"
+    rounded = "" if found.step is None else f", rounded to {in_drawing_units(found.step)}"
+    said = [f"# {what} {found.campaign}{rounded}"]
+    if dividers(found.problem.model):
+        settings = (f"{n}={format_measure(v, found.model.parameters[n].unit)}" for n, v in chosen.items())
+        options = " ".join(f"--set {shlex.quote(setting)}" for setting in settings)
+        said.append(f"# divideropt simulate campaign.yaml {options}")
+    return "\n".join(said) + "\n" + dump_settings(chosen, found.model.parameters)
 
 
 def sheet_data(found: Sheet) -> dict[str, Any]:
@@ -244,15 +266,19 @@ def _stored(store: Store, campaign: Campaign, design: str) -> dict[str, float]:
             row = table.slice(index - first, 1)
             return {name: float(row[name][0].as_py()) for name in schema.variables}
         first += table.num_rows
-    held = f"the store {store.folder} has {first} evaluations of a run {run}"
+    if first == 0:
+        runs = ", ".join(run.name for run in stored_runs(campaign, store))
+        held = f"the store {store.folder} has no evaluation of a run {run}"
+        raise UsageError(f"{show(design)}: {held}; its runs are {runs}")
+    held = f"the store {store.folder} has {first} evaluations of run {run}, {run}/0 to {run}/{first - 1}"
     raise UsageError(f"{show(design)}: {held}; name one of them")
 
 
 def _step(text: str) -> float:
     try:
         width = parse_measure(text, UNIT)
-    except ValueError as error:
-        raise UsageError(f"--step {text}: {error}") from None
+    except ValueError:
+        width = 0.0
     if width <= 0.0:
-        raise UsageError(f"--step {text}: a step is above 0; write 0.1 mm, say")
+        raise UsageError(f"--step {show(text)} is no length above 0; write a number with its unit, such as '0.1 mm'")
     return width

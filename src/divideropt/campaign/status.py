@@ -9,11 +9,10 @@ from divideropt.analysis import (
     hypervolume_history,
     marked,
     repeatable,
-    summarise,
     tally,
 )
 from divideropt.campaign.beside import both_sides
-from divideropt.campaign.branches import stored_runs
+from divideropt.campaign.branches import stored_runs, summaries
 from divideropt.campaign.config import Campaign
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
@@ -31,6 +30,7 @@ class RunStatus:
     Attributes:
         run: Its name.
         evaluations: Evaluations in the log.
+        shared: How many of the first are those of the run from which this one branched.
         budget: Most evaluations it asks for; a strategy may end earlier.
         feasible: How many of them are feasible.
         outcomes: How many ended how.
@@ -45,6 +45,7 @@ class RunStatus:
 
     run: str
     evaluations: int
+    shared: int
     budget: int
     feasible: int
     outcomes: dict[str, int]
@@ -112,7 +113,7 @@ def read_status(store: Store) -> StoreStatus:
     problem = build_problem(campaign)
     schema, reference = TableSchema.of(problem), reference_of(campaign)
     planned = stored_runs(campaign, store)
-    logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in planned}
+    logs = summaries(campaign, store, problem, schema)
     runs = []
     for run in planned:
         found, ending = logs[run.name], kept_ending(store, run, logs[run.name].evaluations)
@@ -121,6 +122,7 @@ def read_status(store: Store) -> StoreStatus:
             RunStatus(
                 run=run.name,
                 evaluations=found.evaluations,
+                shared=found.shared,
                 budget=run.budget,
                 feasible=int(found.told.feasible.sum()),
                 outcomes=dict(sorted(found.outcomes.items())),

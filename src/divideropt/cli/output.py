@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 # ruff: noqa: PLC0415 (what takes time is imported where it is needed)
 
 
+_MISTAKEN = (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP, errno.ENOTDIR)
+"""What the system says of a path that cannot be meant."""
+
+
 class _File(click.Path):
     """A path by which something can be looked up, whether or not it is there."""
 
@@ -34,7 +38,7 @@ class _File(click.Path):
             if stat.S_ISDIR(path.stat().st_mode):
                 (path / "campaign.yaml").stat()
         except OSError as error:
-            if error.errno not in (errno.ENAMETOOLONG, errno.EACCES, errno.ELOOP):  # not there, or the disk's failure
+            if error.errno not in _MISTAKEN:  # not there, or the disk's failure
                 return path
             raise UsageError(f"{path}: {error.strerror}; name another path") from None
         return path
@@ -82,7 +86,7 @@ def check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None
     if out is None:
         return
     if out.suffix not in known:
-        raise UsageError(f"--out {out}: the name must end in {' or '.join(known)}")
+        raise UsageError(f"--out {out}: the name must end in {_any_of(known)}")
     if not out.parent.is_dir():
         raise UsageError(f"--out {out}: there is no folder {out.parent}; make it first")
     if read is not None and out.exists() and read.exists() and out.samefile(read):
@@ -91,6 +95,10 @@ def check_out(out: Path | None, known: tuple[str, ...], read: Path | None = None
     stores = [p for p in whole.parents if (p / "campaign.yaml").is_file() and (p / "evaluations").is_dir()]
     if stores and whole != stores[0] / "report.html":
         raise UsageError(f"--out {out}: that is inside the store {stores[0]}; name a file elsewhere")
+
+
+def _any_of(words: tuple[str, ...]) -> str:
+    return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 def write_table(table: "pd.DataFrame", out: Path | None) -> None:

@@ -1,5 +1,7 @@
 """The program: its commands under headings, and its exit code."""
 
+import codecs
+import io
 import os
 import sys
 import traceback
@@ -17,6 +19,9 @@ from divideropt.errors import DivideroptError, FileMistakes
 
 def main() -> None:
     """Run the command and leave with its exit code."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # what an ASCII terminal lacks, a Greek letter say, as an escape
+        codecs.register_error("escaped", _escaped)
+        sys.stdout.reconfigure(errors="escaped")
     try:
         code = commands.main(prog_name="divideropt", standalone_mode=False) or 0
     except click.ClickException as error:
@@ -40,6 +45,15 @@ def main() -> None:
     except OSError:  # nobody to hear it, and what is in the buffer would be flushed again when Python ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     sys.exit(code)
+
+
+def _escaped(error: UnicodeError) -> tuple[str, int]:
+    """Write what an encoding lacks as JSON does, so that JSON remains what it was."""
+    import json  # noqa: PLC0415 (late: hardly anybody needs it)
+
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
 
 
 @click.group(

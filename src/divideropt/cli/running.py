@@ -204,6 +204,7 @@ def _status_lines(found: "StoreStatus") -> list[str]:
     for item in found.runs:
         ended = ", ".join(f"{number} {name}" for name, number in item.outcomes.items())
         outcomes = f" ({ended})" if ended else ""
+        outcomes += f", the first {item.shared} of them another run's" if item.shared else ""
         best = "" if item.best is None else f"; best max λ {item.best:.4f} ({item.best_design})"
         volume = "" if item.hypervolume is None else f"; hypervolume {item.hypervolume:.4f}"
         asked = plural(item.budget, "evaluation")

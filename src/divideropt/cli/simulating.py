@@ -120,6 +120,7 @@ def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str
     examples=(
         "divideropt sheet results/my nsga2-1/310 --step '0.1 mm'",
         "divideropt sheet results/my nsga2-1/310 --step '0.1 mm' --out sheet.svg    # drawn to scale",
+        "divideropt sheet results/my nsga2-1/310 --step '0.1 mm' --out valve.yaml    # `set:` of the rounded design",
         "divideropt sheet my.yaml --set 'spool_radius=13.3 mm' --out sheet.csv",
     ),
 )
@@ -129,7 +130,7 @@ def error_budget(campaign: Path | None, settings: tuple[str, ...], scenario: str
 @click.option(
     "--step", metavar="LENGTH", help="Round the dimensions to multiples of it, and simulate again: '0.1 mm'."
 )
-@click.option("--out", type=FILE, help="A .csv or .svg file; a table on standard output where not given.")
+@click.option("--out", type=FILE, help="A .csv, .svg or .yaml file; a table on standard output where not given.")
 @AS_JSON
 def sheet(
     source: Path | None,
@@ -144,16 +145,19 @@ def sheet(
     SOURCE is a store, whose design <run>/<index> is named by DESIGN, or a campaign, whose design is --set; without
     it, the thesis's valve as divider.yaml has it. Rounded is what hangs on a variable and is made to a figure:
     diameters of spool, stems, ports and fixed orifices, groove, opening. The clearance is a fit, and is held.
+    A .yaml file has the design, rounded with --step, as `set:` of a campaign's model, and the line that simulates it.
     """
-    check_out(out, (".csv", ".svg"))
+    check_out(out, (".csv", ".svg", ".yaml"))
     say_when_compiling()
     from divideropt.campaign.sheet import sheet as sheet_of
-    from divideropt.campaign.sheet import sheet_data, sheet_table
+    from divideropt.campaign.sheet import sheet_data, sheet_table, sheet_yaml
     from divideropt.report import sheet_svg, sheet_text
 
     found = sheet_of(source, design, settings, step)
     if out is not None and out.suffix == ".svg":
         write_text(sheet_svg(found), out)
+    elif out is not None and out.suffix == ".yaml":
+        write_text(sheet_yaml(found), out)
     elif out is not None:
         write_table(sheet_table(found), out)
     elif not as_json:

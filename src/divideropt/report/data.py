@@ -14,12 +14,11 @@ from divideropt.analysis import (
     compare,
     convergence,
     marked,
-    summarise,
 )
 from divideropt.analysis.breaches import all_breaches
 from divideropt.analysis.failures import all_failures
 from divideropt.analysis.summary import Best
-from divideropt.campaign.branches import active_runs, stored_runs
+from divideropt.campaign.branches import active_runs, stored_runs, summaries
 from divideropt.campaign.ending import kept_ending
 from divideropt.campaign.load import stored_campaign
 from divideropt.campaign.neighbourhood import with_residuals
@@ -170,7 +169,7 @@ def read_report(store: Store, logs: Mapping[str, Summary] | None = None) -> Repo
     problem, runs = build_problem(campaign), stored_runs(campaign, store)
     schema = TableSchema.of(problem)
     if logs is None:
-        logs = {run.name: summarise(store.log(run.name, schema).read(), problem, schema) for run in runs}
+        logs = summaries(campaign, store, problem, schema)
     logs = {run.name: logs[run.name] for run in runs}  # in this order, whoever read them
     strategies = {run.name: run.strategy for run in runs}
     reference = reference_of(campaign)

@@ -31,6 +31,7 @@ class RunFacts:
         budget: Most evaluations it asks for.
         feasible: Designs whose outcome is ok and which keep every constraint.
         outcomes: How many simulations ended how; only those that occurred.
+        own: The same without those that a branch has of the run from which it branched.
         examples: A sentence of the first simulation that ended so.
         marks: Numbers of evaluations at which the histories are taken.
         hypervolumes: Hypervolume up to each mark; empty without a reference point.
@@ -48,6 +49,7 @@ class RunFacts:
     budget: int
     feasible: int
     outcomes: Mapping[str, int]
+    own: Mapping[str, int]
     examples: Mapping[str, str]
     marks: tuple[int, ...]
     hypervolumes: tuple[float, ...]
@@ -97,6 +99,7 @@ def read_run(
         run.budget,
         int(told.feasible.sum()),
         dict(sorted(log.outcomes.items(), key=lambda item: list(Outcome).index(Outcome(item[0])))),
+        log.own,
         log.examples,
         marks,
         volumes,

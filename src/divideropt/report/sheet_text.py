@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from divideropt.campaign.rounding import in_drawing_units
 from divideropt.campaign.sheet import Sheet
 from divideropt.models import Parameter, Quantity
 from divideropt.models.dimensions import Dimension, Kind
@@ -127,7 +128,7 @@ def title_of(found: Sheet) -> str:
     design = f"design {found.design} of {found.campaign}" if found.design else f"a design of {found.campaign}"
     if found.step is None:
         return f"{design}, not rounded"
-    return f"{design}, as it is and rounded to {trimmed(number(found.step * 1e3, DIGITS))} mm"
+    return f"{design}, as it is and rounded to {in_drawing_units(found.step)}"
 
 
 def _line(section: str, entry: Dimension | Parameter | Quantity, values: Sequence[float], note: str) -> ShownLine:

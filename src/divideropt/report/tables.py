@@ -133,7 +133,7 @@ def outcome_table(data: ReportData) -> Table:
     for outcome in outcomes:
         example = next((run.examples[outcome] for run in data.runs if outcome in run.examples), "")
         counts = [
-            sum(run.outcomes.get(outcome, 0) for run in data.runs if run.strategy == strategy)
+            sum(run.own.get(outcome, 0) for run in data.runs if run.strategy == strategy)
             for strategy in data.strategies
         ]
         words = [outcome, str(sum(counts)), share(sum(counts), data.failing.designs), *map(str, counts), example]

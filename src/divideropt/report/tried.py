@@ -45,8 +45,8 @@ def read_tried(logs: Mapping[str, Summary], most: int = MOST_TRIED) -> Tried:
         logs: Each run's log, summed up; at least one.
         most: How many to keep.
     """
-    objectives = np.concatenate([log.told.F for log in logs.values()])
-    violation = np.concatenate([log.told.violation for log in logs.values()])
+    objectives = np.concatenate([log.told.F[log.shared :] for log in logs.values()])
+    violation = np.concatenate([log.told.violation[log.shared :] for log in logs.values()])
     ended = np.flatnonzero(violation < FAILURE_VIOLATION)
     kept = ended
     if len(ended) > most:

@@ -11,6 +11,7 @@ import pyarrow as pa
 from divideropt.errors import StoreError, UsageError
 from divideropt.models.base import FloatArray, Outcome, Verdict
 from divideropt.problem import Evaluations, Problem
+from divideropt.units import LARGEST
 
 SCHEMA_VERSION = 2
 """Version of the tables; a table of any other is refused.
@@ -180,6 +181,10 @@ class TableSchema:
         wrong = ~np.isfinite(_matrix(table, self.variables)).all(axis=1)
         if wrong.any():
             return f"{table['design_id'][int(wrong.argmax())]} has a variable that is no number"
+        size = np.abs(_matrix(table, self.quantities))
+        wrong = ((size > LARGEST) & (size < np.inf)).any(axis=1)
+        if wrong.any():
+            return f"{table['design_id'][int(wrong.argmax())]} has a quantity beyond {LARGEST:g} that is not infinite"
         return None
 
     def log_objection(self, table: pa.Table, run: str, first: int) -> str | None:

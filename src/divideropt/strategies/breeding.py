@@ -22,6 +22,10 @@ from pymoo.util.randomized_argsort import randomized_argsort
 from divideropt.models.base import FloatArray
 from divideropt.problem import DesignSpace
 
+NARROW = 1e-8
+"""A variable of a smaller range counts in shares of it where designs are compared: pymoo takes two for one that are
+closer than 1e-16, whatever the units."""
+
 MOST_MATINGS = 100
 """How often parents are mated anew where children are duplicates."""
 
@@ -50,7 +54,9 @@ class Breeding:
         """Breed in a design space, with these draws."""
         self._box, self._random = PymooProblem(n_var=len(space), xl=space.lower, xu=space.upper), random
         self._crossover, self._mutation = SBX(eta=15, prob=0.9), PM(eta=20)
-        self._duplicates = DefaultDuplicateElimination(func=np.asarray)
+        extent = space.upper - space.lower
+        unit = np.where(extent < NARROW, extent, 1.0)
+        self._duplicates = DefaultDuplicateElimination(func=lambda X: np.asarray(X) / unit)
 
     def distinct(self, X: FloatArray, *others: FloatArray) -> FloatArray:
         """Return the rows of X that stand neither above in X nor in the others."""
