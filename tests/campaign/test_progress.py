@@ -3,6 +3,7 @@
 import io
 import json
 from dataclasses import asdict
+from types import SimpleNamespace
 
 import pytest
 
@@ -99,7 +100,7 @@ def test_a_run_that_was_only_replayed_has_no_rate(tmp_path):
 
 def test_a_count_says_how_long_it_takes_yet(monkeypatch):
     clock = iter([0.0, 100.0, 100.0, 200.0])
-    monkeypatch.setattr("divideropt.campaign.progress.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("divideropt.campaign.progress.time", SimpleNamespace(monotonic=lambda: next(clock)))
     stream = io.StringIO()
     with Counter("{} of {} done", 2, stream) as counter:
         counter.advance()

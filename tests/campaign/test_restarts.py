@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from divideropt.campaign import runner
+from divideropt.campaign import attempts as doing
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.load import parse_campaign
 from divideropt.campaign.mishaps import RESTARTS
@@ -114,7 +114,7 @@ def test_a_run_that_breaks_down_again_and_again_is_given_up_and_the_others_go_on
     calm, tmp_path, monkeypatch, backend
 ):
     attempts = []
-    monkeypatch.setattr(runner, "work", breaking(runner.work, attempts))
+    monkeypatch.setattr(doing, "work", breaking(doing.work, attempts))
     workers = 4 if backend == "loky" else 1  # more than runs: batches are shared, and the runs driven from here
     done, words = run(tmp_path / "store", "begin: 2", backend, workers)
     assert len(attempts) == RESTARTS + 1
@@ -138,7 +138,7 @@ def test_the_command_says_which_runs_are_incomplete_and_ends_with_6(tmp_path, mo
     (tmp_path / "rough.yaml").write_text(text.replace("BACKEND", "sequential"))
     monkeypatch.chdir(tmp_path)
     with monkeypatch.context() as patch:
-        patch.setattr(runner, "work", breaking(runner.work))
+        patch.setattr(doing, "work", breaking(doing.work))
         code, _, words = called(["run", "rough.yaml"], monkeypatch, capsys)
     assert code == 6
     assert "1 of 3 runs are incomplete" in words

@@ -134,7 +134,7 @@ def test_threads_share_the_batches_of_a_run_that_is_alone(tmp_path, monkeypatch)
     used = []
     on_threads = Divider.on_threads
     monkeypatch.setattr(Divider, "on_threads", lambda self, n: used.append(n) or on_threads(self, n))
-    monkeypatch.setattr("divideropt.campaign.runner.simulate_share", None)  # no other process is asked
+    monkeypatch.setattr("divideropt.campaign.attempts.simulate_share", None)  # no other process is asked
     run(tmp_path / "shared", DIVIDER, workers=2, backend="loky")
     assert used == [2]
     assert_same(tmp_path / "shared", tmp_path / "alone")

@@ -271,14 +271,20 @@ def test_a_figure_taller_than_paper_is_made_to_fit_a_page(opened, data):
     assert high == 2100
     page.emulate_media(media="print")
     page.set_viewport_size({"width": 703, "height": 1000})
-    page.wait_for_timeout(500)
-    assert tall.evaluate(size) == pytest.approx([703, 900], abs=1)
-    assert all(width == own for width, own in page.evaluate(OWN))
+
+    def fits() -> None:
+        assert tall.evaluate(size) == pytest.approx([703, 900], abs=1)
+        assert all(width == own for width, own in page.evaluate(OWN))
+
+    eventually(page, fits)
     assert blank_figures(page, "#response") == []
     page.emulate_media(media="screen")
     page.set_viewport_size({"width": 1280, "height": 900})
-    page.wait_for_timeout(500)
-    assert tall.evaluate(size) == [wide, high]
+
+    def as_before() -> None:
+        assert tall.evaluate(size) == [wide, high]
+
+    eventually(page, as_before)
 
 
 def test_the_label_of_a_point_writes_numbers_as_the_page_does(opened, data):

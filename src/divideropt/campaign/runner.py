@@ -1,12 +1,11 @@
 """Runs a campaign: its runs in parallel, then the fronts, of whose points some are verified and explored around."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-import numpy as np
 import pyarrow as pa
 
 from divideropt.analysis import (
@@ -18,27 +17,24 @@ from divideropt.analysis import (
     tally,
     worth_verifying,
 )
+from divideropt.campaign.attempts import Attempts
 from divideropt.campaign.branches import active_runs, branch_off, stored_runs, summaries
 from divideropt.campaign.config import Campaign
-from divideropt.campaign.crew import Crew, ProcessDiedError
+from divideropt.campaign.crew import Crew
 from divideropt.campaign.dump import dump_campaign
 from divideropt.campaign.ending import Reason, keep_branched, kept_ending
-from divideropt.campaign.execute import Simulate
 from divideropt.campaign.extend import check_endings, check_extends
 from divideropt.campaign.hire import hired
 from divideropt.campaign.interrupt import Interruption
 from divideropt.campaign.load import stored_campaign
-from divideropt.campaign.mishaps import RESTARTS, Mishaps
 from divideropt.campaign.neighbourhood import Neighbourhood, with_residuals
-from divideropt.campaign.plan import Run, build_problem, dividers
-from divideropt.campaign.progress import Display, say
+from divideropt.campaign.plan import Run, build_problem
+from divideropt.campaign.progress import say
 from divideropt.campaign.verify import Verifier
-from divideropt.campaign.worker import STOP_FILE, Ending, simulate_share, warm_up, work, work_as_process
+from divideropt.campaign.worker import STOP_FILE, Ending, warm_up
 from divideropt.errors import BatchDiffersError, DamagedFileError, NoFeasibleDesignError, StoreError
-from divideropt.models.base import FloatArray
-from divideropt.problem import Evaluations, Problem
+from divideropt.problem import Problem
 from divideropt.store import Store, TableSchema
-from divideropt.store.files import disk_errors
 
 
 @dataclass(frozen=True)
@@ -88,6 +84,7 @@ class Runner:
         self._text = dump_campaign(campaign)
         self._store = Store(folder)
         self._interruption = Interruption(folder, again, self._store.status_folder / STOP_FILE)
+        self._attempts = Attempts(campaign, self._text, self._store, self._interruption, words)
         self._workers = workers
         self._words = words
 
@@ -202,12 +199,12 @@ class Runner:
     def _drive(self, problem: Problem, crew: Crew | None, branch: bool) -> Mapping[str, str]:
         """Do the runs; return why some were given up, by their names."""
         runs = active_runs(self._campaign, self._store)
-        endings = self._endings(runs, problem, crew)
+        endings = self._attempts.endings(runs, problem, crew)
         if branch:
             self._interruption.check()
             branches = self._branches(runs, endings, TableSchema.of(problem))
             endings = [e for e in endings if not isinstance(e.error, BatchDiffersError)]
-            endings += self._endings(branches, problem, crew) if branches else []
+            endings += self._attempts.endings(branches, problem, crew) if branches else []
         self._raise_first(endings)
         return {ending.run: ending.failure for ending in endings if ending.failure is not None}
 
@@ -227,81 +224,6 @@ class Runner:
             say(f"{origin.name}: goes on as {branch.name}, from its first {error.batch} batches", self._words)
             found.append(branch)
         return found
-
-    def _endings(self, runs: Sequence[Run], problem: Problem, crew: Crew | None) -> list[Ending]:
-        folder = self._store.status_folder
-        with disk_errors(folder):
-            folder.mkdir(parents=True, exist_ok=True)
-            for old in (folder / STOP_FILE, *folder.glob("*.json")):
-                old.unlink(missing_ok=True)
-            for run in runs:  # where this process is alone, an earlier one may have died of the run
-                Mishaps(folder, run.name).forget(deaths=crew is not None)
-        self._interruption.check()
-        with Display(folder, {run.name: run.budget for run in runs}, self._words) as display:
-            if crew is None:
-                return [self._persist(lambda run: self._work_here(run, problem), run, display) for run in runs]
-            if len(runs) < crew.size:
-                return self._share_batches(runs, problem, crew, display)
-            return self._one_process_a_run(runs, crew, display)
-
-    def _one_process_a_run(self, runs: Sequence[Run], crew: Crew, display: Display) -> list[Ending]:
-        """Do the runs side by side, the longest first, so that no process is left alone with it in the end."""
-
-        def attempt(run: Run) -> Ending:
-            return crew.call(work_as_process, self._text, self._store.absolute(), run)
-
-        longest = sorted(runs, key=lambda run: run.budget, reverse=True)
-        waiting = [crew.submit(self._persist, attempt, run, display) for run in longest]
-        return [ending.result() for ending in waiting]
-
-    def _share_batches(self, runs: Sequence[Run], problem: Problem, crew: Crew, display: Display) -> list[Ending]:
-        """Do the runs one after the other, each batch shared by threads, or by processes if threads gain nothing."""
-        threaded = problem.on_threads(crew.size) if crew.here else None
-        quick = bool(dividers(problem.model))
-
-        def simulate(designs: FloatArray) -> Evaluations:
-            if quick and len(designs) < crew.size:
-                return problem.simulate(designs)
-            shares = np.array_split(designs, min(len(designs), crew.size))
-            waiting = [crew.submit(self._simulate_share, crew, share) for share in shares]
-            return Evaluations.together([part.result() for part in waiting])
-
-        def attempt(run: Run) -> Ending:
-            return self._work_here(run, problem, simulate if threaded is None else threaded.simulate)
-
-        return [self._persist(attempt, run, display) for run in runs]
-
-    def _simulate_share(self, crew: Crew, share: FloatArray) -> Evaluations:
-        """Have a share evaluated; where its process died, by one that expects that."""
-        try:
-            return crew.call(simulate_share, self._text, share)
-        except ProcessDiedError:
-            return crew.insist(simulate_share, self._text, share, True)
-
-    def _persist(self, attempt: Callable[[Run], Ending], run: Run, display: Display) -> Ending:
-        """Attempt a run; begin it anew from its log where its process dies or breaks down, three times."""
-        reason = ""
-        for number in range(RESTARTS + 1):
-            if number > 0:
-                display.say(f"{run.name}: {reason}; begun anew from its log, {number} of {RESTARTS}")
-            try:
-                return attempt(run)
-            except ProcessDiedError as died:
-                reason = str(died)
-                if died.final:
-                    break
-            except Exception as error:  # a bug of ours, of a library or of a model, in this run alone
-                reason = f"it broke down ({type(error).__name__}: {error})"
-            if self._interruption.heard:
-                return Ending(run.name, stopped=True)
-        else:
-            reason = f"{reason}, {RESTARTS + 1} times"
-        Mishaps(self._store.status_folder, run.name).give_up(reason)
-        display.say(f"{run.name}: given up: {reason}")
-        return Ending(run.name, failure=reason)
-
-    def _work_here(self, run: Run, problem: Problem, simulate: Simulate | None = None) -> Ending:
-        return work(self._campaign, problem, self._store, run, simulate)
 
     def _raise_first(self, endings: Sequence[Ending]) -> None:
         for ending in endings:
