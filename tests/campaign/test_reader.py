@@ -195,7 +195,7 @@ def test_a_byte_that_is_not_utf_8_has_its_place(tmp_path, content, at):
 def test_an_empty_file_is_said_to_be_empty(tmp_path, content):
     path = tmp_path / "c.yaml"
     path.write_text(content)
-    with pytest.raises(UsageError, match=r"c\.yaml: the file is empty; begin with a copy"):
+    with pytest.raises(UsageError, match=r"c\.yaml: the file is empty; `divideropt init my"):
         read_document(path)
 
 

@@ -142,7 +142,7 @@ def read_text(text: str, path: str = "campaign") -> Document:
         message = "this cannot be read as YAML; look for an escape or a % directive from here on"
         raise FileMistakes(path, [Mistake(walk.here.line, walk.here.column, message)]) from None
     if document.data is None:
-        raise UsageError(f"{path}: the file is empty; begin with a copy of campaigns/quickstart.yaml")
+        raise UsageError(f"{path}: the file is empty; `divideropt init my.yaml` writes one to begin with")
     return document
 
 
