@@ -38,6 +38,14 @@ DOTS = """pair => {
 }"""
 """Where each design is in a projection, by plotly's axes, and how opaque the page's canvases are there."""
 
+ANOTHER_ADDRESS = """(text) => new Promise((done) => {
+    const before = location.hash;
+    addEventListener("hashchange", () => done(), { once: true });
+    location.hash = text;
+    if (location.hash === before) done();
+})"""
+"""Gives the page an address, and waits until it has read it."""
+
 APART = 12.0
 """How far from each other two marks surely do not touch, nor the ring around the one that is shown closely [px]."""
 
@@ -78,6 +86,11 @@ class Opened:
     def dots(self, pair: str) -> list[dict[str, float]]:
         """Each design's `id`, place on the screen `x`, `y` [px], and alpha in the canvases `all` and `some` there."""
         return list(self.page.evaluate(DOTS, pair))
+
+    def visit(self, fragment: str) -> None:
+        """Give the page an address with this fragment, `#select=…`, and wait until every view has followed."""
+        self.page.evaluate(ANOTHER_ADDRESS, fragment)
+        self.settled()
 
     def settled(self) -> None:
         """Wait until every view has followed the selection."""

@@ -99,7 +99,7 @@ def test_the_selected_design_says_whether_the_model_vouches_for_it(
     first = next(design for design in data.front if design.design_id not in elsewhere)
     front = tuple(replace(design, valid=False) if design is first else design for design in data.front)
     found = opened(render_report(replace(data, front=front)), NO_WEBGL)
-    found.page.evaluate("(id) => { location.hash = '#select=' + id; }", first.design_id)
+    found.visit(f"#select={first.design_id}")
     found.page.wait_for_function("(id) => document.getElementById('choice').value === id", arg=first.design_id)
     assert "within what the model assumes no" in " ".join(found.page.locator("#details").inner_text().split())
     quiet(found)

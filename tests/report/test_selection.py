@@ -348,7 +348,7 @@ def test_a_headings_drag_moves_its_axis(report, data):
 
 def test_the_address_restores_a_selection(report, data):
     wanted = [data.front[i].design_id for i in (1, 5, 6)]
-    report.page.evaluate("text => { location.hash = text; }", f"#select={','.join(wanted)}&show={wanted[2]}")
+    report.visit(f"#select={','.join(wanted)}&show={wanted[2]}")
     followed(report, 3)
     assert wanted[2] in report.title()
     written = report.page.evaluate("location.hash")
@@ -365,17 +365,11 @@ def test_the_address_restores_a_selection(report, data):
 
 
 def test_designs_that_the_page_has_not_are_said(report, data):
-    report.page.evaluate("text => { location.hash = text; }", f"#select={data.front[1].design_id},nsga2-9/1.2")
+    report.visit(f"#select={data.front[1].design_id},nsga2-9/1.2")
     expect(report.page.locator("#announced")).to_contain_text("2 of the 3 designs that the address names are not in")
     report.settled()
     assert report.page.evaluate(COUNTS)["rows"] == 1
 
-
-ANOTHER_ADDRESS = """(text) => new Promise((done) => {
-    addEventListener("hashchange", () => done(), { once: true });
-    location.hash = text;
-})"""
-"""Gives the page an address, and waits until it has read it."""
 
 HOSTILE_FRAGMENTS = (
     "#select=",
@@ -395,7 +389,7 @@ HOSTILE_FRAGMENTS = (
 def test_a_hostile_address_is_ignored(report, data, fragment):
     report.page.locator("#front-table tbody tr").nth(1).click()
     followed(report, 1)
-    report.page.evaluate(ANOTHER_ADDRESS, fragment)
+    report.visit(fragment)
     followed(report, 1)
     assert data.front[1].design_id in report.title()
     assert report.page.evaluate("window.hacked ?? null") is None
@@ -411,7 +405,7 @@ def saved(found: Opened, kind: str, folder: Path) -> Path:
 
 
 def test_the_selection_is_saved_as_tables(report, data, store: Store, tmp_path):
-    report.page.evaluate("text => { location.hash = text; }", "#select=" + ",".join(_some(data)))
+    report.visit("#select=" + ",".join(_some(data)))
     told(report, 3)
     path = saved(report, "designs", tmp_path)
     assert path.name == "small-selection-designs.csv"
@@ -429,7 +423,7 @@ def test_the_selection_is_saved_as_tables(report, data, store: Store, tmp_path):
 
 
 def test_the_selection_is_saved_as_blocks_for_a_campaign(report, data, store: Store, tmp_path):
-    report.page.evaluate("text => { location.hash = text; }", "#select=" + ",".join(_some(data)))
+    report.visit("#select=" + ",".join(_some(data)))
     told(report, 3)
     text = saved(report, "yaml", tmp_path).read_text()
     chosen = [design for design in data.front if design.design_id in _some(data)]

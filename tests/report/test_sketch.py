@@ -79,7 +79,7 @@ def pick(report: Opened, *ids: str, step: str = "0") -> None:
     """Select designs, the first to be shown closely, as they are or rounded to a step."""
     if report.count("#step"):
         report.page.locator("#step").select_option(step)
-    report.page.evaluate("(hash) => { location.hash = hash; }", f"#select={','.join(ids)}&show={ids[0]}")
+    report.visit(f"#select={','.join(ids)}&show={ids[0]}")
     expect(report.page.locator("#sketch-said")).to_contain_text(ids[0])
 
 
