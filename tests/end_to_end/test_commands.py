@@ -271,10 +271,10 @@ def test_check_and_run_refuse_a_bad_campaign_with_every_place(tmp_path):
 
 
 def test_absurd_dimensions_are_an_outcome_not_a_traceback(tmp_path, monkeypatch, capsys):
-    code, out, err = call_here(["simulate", "--set", "spool_radius=1e40 m"], tmp_path, monkeypatch, capsys)
+    code, out, err = call_here(["simulate", "--set", "groove_width=1e40 m"], tmp_path, monkeypatch, capsys)
     assert code == 0
     assert out.count("\n") == 1
-    assert "outcome: unstable" in err
+    assert "outcome: no_equilibrium" in err
     assert "Traceback" not in err
 
 
