@@ -12,7 +12,7 @@ from pathlib import Path
 from divideropt.campaign.crew import ProcessDiedError
 from divideropt.errors import DivideroptError
 
-LEAVE_SECONDS = 4.0
+LEAVE_SECONDS = 3.5
 """How long after the first signal the command ends, whatever is still at work [s]. What workers have computed is on
 disk by then; see `divideropt.campaign.dropping`."""
 
